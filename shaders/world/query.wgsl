@@ -1,0 +1,34 @@
+// Motion-matching queries: the pose half of the frame now shown, the trajectory half from the
+// action. One invocation an environment.
+//
+// features  [frames][4 * QUADS]
+// whole     [WHOLES][envs]
+// action    [envs][TRAJECTORY]     normalised
+// queries   [envs][4 * QUADS]      padded with zeros
+
+#import layout
+
+struct Params {
+    envs: u32,
+}
+
+@group(0) @binding(0) var<storage, read> features: array<f32>;
+@group(0) @binding(1) var<storage, read> whole: array<u32>;
+@group(0) @binding(2) var<storage, read> action: array<f32>;
+@group(0) @binding(3) var<storage, read_write> queries: array<f32>;
+@group(0) @binding(4) var<uniform> params: Params;
+
+@compute @workgroup_size(64)
+fn query(@builtin(global_invocation_id) id: vec3u) {
+    let env = id.x;
+    if (env >= params.envs) { return; }
+    let row = whole[FRAME * params.envs + env] * 4u * QUADS;
+    let out = env * 4u * QUADS;
+    for (var i = 0u; i < POSE; i++) {
+        queries[out + i] = features[row + i];
+    }
+    for (var i = 0u; i < TRAJECTORY; i++) {
+        queries[out + POSE + i] = action[env * TRAJECTORY + i];
+    }
+    queries[out + FEATURE] = 0.0;
+}

@@ -1,0 +1,67 @@
+// Starts a new episode in every environment whose step ended (or in all of them).
+// One invocation an environment.
+//
+// candidates  [candidates]       database frame of every search candidate
+// ended       [.. + envs]        RUNNING, REACHED or TRUNCATED, read from `offset` on
+// real        [REALS][envs]      see layout
+// whole       [WHOLES][envs]
+
+#import layout
+#import rng
+
+struct Params {
+    envs: u32,
+    candidates: u32,
+    seed: u32,
+    clock: u32,
+    offset: u32,
+    everywhere: u32,
+    half_side: f32,
+    reach: f32,
+}
+
+@group(0) @binding(0) var<storage, read> candidates: array<u32>;
+@group(0) @binding(1) var<storage, read> ended: array<u32>;
+@group(0) @binding(2) var<storage, read_write> real: array<f32>;
+@group(0) @binding(3) var<storage, read_write> whole: array<u32>;
+@group(0) @binding(4) var<uniform> params: Params;
+
+const START = 0u;   // random streams
+const TARGET = 1u;
+const DRAWS = 16u;
+
+@compute @workgroup_size(64)
+fn reset(@builtin(global_invocation_id) id: vec3u) {
+    let env = id.x;
+    let envs = params.envs;
+    if (env >= envs) { return; }
+    if (params.everywhere == 0u && ended[params.offset + env] == RUNNING) { return; }
+    let start = random4(params.seed, env, params.clock, START);
+    whole[FRAME * envs + env] = candidates[index_below(start.x, params.candidates)];
+    whole[AGE * envs + env] = 0u;
+
+    // A normalised pair of Gaussians points everywhere alike.
+    let east = gaussian(random4(params.seed, env, params.clock, START + 2u));
+    let north = gaussian(random4(params.seed, env, params.clock, START + 3u));
+    let length = sqrt(east * east + north * north);
+    let heading = select(vec2f(0.0, 1.0), vec2f(east, north) / length, length > 1e-6);
+    real[X * envs + env] = 0.0;
+    real[Z * envs + env] = 0.0;
+    real[HEADING_X * envs + env] = heading.x;
+    real[HEADING_Z * envs + env] = heading.y;
+
+    // Uniform in the square, drawn again while within reach; the corner after DRAWS tries.
+    var target_at = vec2f(params.half_side);
+    for (var draw = 0u; draw < DRAWS; draw++) {
+        let bits = random4(params.seed, env, params.clock, TARGET + 4u * (draw + 1u));
+        let tried = (2.0 * vec2f(uniform01(bits.x), uniform01(bits.y)) - 1.0) * params.half_side;
+        if (dot(tried, tried) > params.reach * params.reach) {
+            target_at = tried;
+            break;
+        }
+    }
+    real[TARGET_X * envs + env] = target_at.x;
+    real[TARGET_Z * envs + env] = target_at.y;
+    real[RETURN * envs + env] = 0.0;
+    real[TRAVELLED * envs + env] = 0.0;
+}

@@ -1,0 +1,66 @@
+//! Arrays on the device.
+
+use super::device::Gpu;
+use bytemuck::Pod;
+use cubecl::server::Handle;
+use std::marker::PhantomData;
+
+/// An array of `len` values of four bytes each on the device. Cloning shares the memory.
+#[derive(Clone)]
+pub struct Buffer<T> {
+    pub(super) handle: Handle,
+    len: usize,
+    kind: PhantomData<T>,
+}
+
+/// Any buffer, as a kernel's argument.
+pub trait Argument {
+    fn handle(&self) -> Handle;
+}
+
+impl<T: Pod> Argument for Buffer<T> {
+    fn handle(&self) -> Handle {
+        self.handle.clone()
+    }
+}
+
+impl<T: Pod> Buffer<T> {
+    /// Copies `values` to the device.
+    pub fn from_slice(gpu: &Gpu, values: &[T]) -> Self {
+        let handle = gpu.client.create_from_slice(bytemuck::cast_slice(values));
+        Self::wrap(handle, values.len())
+    }
+
+    /// `len` values, all zero.
+    pub fn zeroed(gpu: &Gpu, len: usize) -> Self {
+        Self::from_slice(gpu, &vec![T::zeroed(); len])
+    }
+
+    pub(super) fn wrap(handle: Handle, len: usize) -> Self {
+        Self {
+            handle,
+            len,
+            kind: PhantomData,
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Waits for the device and copies everything to the host.
+    ///
+    /// # Errors
+    /// The device was lost or a kernel that writes this buffer failed.
+    pub fn read(&self, gpu: &Gpu) -> anyhow::Result<Vec<T>> {
+        let bytes = gpu
+            .client
+            .read_one(self.handle.clone())
+            .map_err(|error| anyhow::anyhow!("reading from the GPU failed: {error:?}"))?;
+        Ok(bytemuck::pod_collect_to_vec::<u8, T>(&bytes)[..self.len].to_vec())
+    }
+}

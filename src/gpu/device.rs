@@ -1,0 +1,154 @@
+//! Which adapter or processor runs the program.
+
+use super::tensor;
+use burn::tensor::wgpu::{MemoryConfiguration, WgpuInitError};
+use burn::tensor::{Device as TensorDevice, DeviceKind};
+use clap::ValueEnum;
+use cubecl::client::Client;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
+/// What the user asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Choice {
+    /// A real GPU if there is one, else the native CPU path.
+    #[default]
+    Auto,
+    /// The native CPU path: SIMD on all cores, burn's `flex` networks.
+    Cpu,
+    /// A real GPU: discrete, else integrated, else virtual.
+    Gpu,
+    /// Mesa's software Vulkan: the GPU path without a GPU, for tests.
+    Lavapipe,
+}
+
+/// No adapter of the asked-for kind.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "no {wanted} found: {why}\n  Install a Vulkan, Metal or DX12 driver (Mesa's `mesa-vulkan-drivers` brings lavapipe), or use `--device cpu`"
+)]
+pub struct NoAdapter {
+    wanted: &'static str,
+    why: String,
+}
+
+/// An opened device.
+#[derive(Clone)]
+pub enum Device {
+    Cpu,
+    Gpu(Gpu),
+}
+
+/// A wgpu device that burn's tensors and this program's kernels share.
+#[derive(Clone)]
+pub struct Gpu {
+    pub(super) client: Client,
+    pub(super) cube: burn_cubecl::CubeDevice,
+    tensors: TensorDevice,
+    /// The adapter's own name.
+    pub name: String,
+    /// Lavapipe and its kind: eight lanes, cheap uniform loads, no fast workgroup memory.
+    pub software: bool,
+}
+
+impl Device {
+    /// Opens the device. `Choice::Auto` never fails.
+    pub fn open(choice: Choice) -> Result<Self, NoAdapter> {
+        match choice {
+            Choice::Cpu => Ok(Device::Cpu),
+            Choice::Gpu => Gpu::real().map(Device::Gpu),
+            Choice::Lavapipe => Gpu::lavapipe().map(Device::Gpu),
+            Choice::Auto => Ok(Gpu::real().map_or(Device::Cpu, Device::Gpu)),
+        }
+    }
+
+    /// Where burn keeps the tensors that go with this device.
+    pub fn tensors(&self) -> TensorDevice {
+        match self {
+            Device::Cpu => TensorDevice::flex(),
+            Device::Gpu(gpu) => gpu.tensors.clone(),
+        }
+    }
+
+    /// A name for logs and reports: the adapter's, or the number of CPU threads.
+    pub fn name(&self) -> String {
+        match self {
+            Device::Cpu => format!("cpu ({} threads)", rayon::current_num_threads()),
+            Device::Gpu(gpu) => gpu.name.clone(),
+        }
+    }
+
+    /// Waits until everything asked of the device is done.
+    ///
+    /// # Errors
+    /// The device was lost or a kernel failed.
+    pub fn sync(&self) -> anyhow::Result<()> {
+        match self {
+            Device::Cpu => Ok(()),
+            Device::Gpu(gpu) => gpu
+                .tensors
+                .sync()
+                .map_err(|error| anyhow::anyhow!("the GPU stopped: {error}")),
+        }
+    }
+}
+
+impl Gpu {
+    /// The first discrete, else integrated, else virtual GPU.
+    pub fn real() -> Result<Self, NoAdapter> {
+        let kinds = [
+            DeviceKind::DiscreteGpu(0),
+            DeviceKind::IntegratedGpu(0),
+            DeviceKind::VirtualGpu(0),
+        ];
+        let mut why = String::new();
+        for kind in kinds {
+            match Self::shared(kind, false) {
+                Ok(gpu) => return Ok(gpu),
+                Err(error) => why = error,
+            }
+        }
+        Err(NoAdapter { wanted: "GPU", why })
+    }
+
+    /// Mesa's software rasteriser.
+    pub fn lavapipe() -> Result<Self, NoAdapter> {
+        Self::shared(DeviceKind::Cpu, true).map_err(|why| NoAdapter {
+            wanted: "software Vulkan adapter (lavapipe)",
+            why,
+        })
+    }
+
+    /// burn's runtime can be set up once a process and kind: later calls share the first one's.
+    fn shared(kind: DeviceKind, software: bool) -> Result<Self, String> {
+        static OPENED: Mutex<Option<HashMap<DeviceKind, Gpu>>> = Mutex::new(None);
+        let mut opened = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
+        let opened = opened.get_or_insert_default();
+        if let Some(gpu) = opened.get(&kind) {
+            return Ok(gpu.clone());
+        }
+        let gpu = Self::new(kind.clone(), software).map_err(|error| error.to_string())?;
+        opened.insert(kind, gpu.clone());
+        Ok(gpu)
+    }
+
+    fn new(kind: DeviceKind, software: bool) -> Result<Self, WgpuInitError> {
+        // One page an allocation: a dispatch may then bind two buffers, one read-only and one
+        // read-write, without both being slices of the same page, which wgpu refuses.
+        let (tensors, setup) = TensorDevice::wgpu_options()
+            .device_kind(kind)
+            .memory_config(MemoryConfiguration::ExclusivePages)
+            .init_with_setup()?;
+        let (client, cube) = tensor::client_of(&tensors);
+        let name = setup.adapter.get_info().name;
+        Ok(Gpu {
+            client,
+            cube,
+            tensors,
+            name,
+            software,
+        })
+    }
+}

@@ -1,0 +1,16 @@
+//! The only place that knows wgpu, cubecl and burn's inside.
+//!
+//! - [`device`]: which adapter or processor runs the program;
+//! - [`shader`]: the validated text and layout of every shader;
+//! - [`kernel`]: the only launch;
+//! - [`buffer`]: arrays on the device;
+//! - [`tensor`]: the only bridge between buffers and burn's tensors.
+
+pub mod buffer;
+pub mod device;
+pub mod kernel;
+pub mod shader;
+pub mod tensor;
+
+pub use buffer::Buffer;
+pub use device::{Choice, Device, Gpu};

@@ -1,0 +1,77 @@
+//! What the build script found out about every shader under `shaders/`.
+
+/// One validated compute shader.
+#[derive(Debug)]
+pub struct Shader {
+    /// File stem and entry point.
+    pub name: &'static str,
+    /// WGSL, imports included.
+    pub source: &'static str,
+    pub workgroup: [u32; 3],
+    /// Storage buffers: bindings `0..buffers` of group 0. The uniform, if any, follows them.
+    pub buffers: u32,
+    /// Bytes of the uniform; 0 if there is none.
+    pub params: usize,
+}
+
+/// Type of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    U32,
+    I32,
+    F32,
+}
+
+/// Place and type of one parameter in the uniform.
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    pub offset: usize,
+    pub kind: Kind,
+}
+
+/// A Rust type that may stand in a parameter struct.
+pub trait Scalar {
+    const KIND: Kind;
+}
+
+impl Scalar for u32 {
+    const KIND: Kind = Kind::U32;
+}
+impl Scalar for i32 {
+    const KIND: Kind = Kind::I32;
+}
+impl Scalar for f32 {
+    const KIND: Kind = Kind::F32;
+}
+
+/// Compares at compile time.
+pub const fn same_kind(a: Kind, b: Kind) -> bool {
+    a as u8 == b as u8
+}
+
+/// Declares a kernel's parameter struct and checks it, at compile time, against the uniform of
+/// the shader of that name: same fields, same order, same types, same size.
+#[macro_export]
+macro_rules! shader_params {
+    ($(#[$meta:meta])* pub struct $name:ident for $shader:ident { $($(#[$doc:meta])* pub $field:ident: $kind:ty,)* }) => {
+        $(#[$meta])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+        pub struct $name { $($(#[$doc])* pub $field: $kind,)* }
+
+        const _: () = {
+            use $crate::gpu::shader::{self, Scalar, $shader::params};
+            $(
+                assert!(
+                    params::$field().offset == std::mem::offset_of!($name, $field)
+                        && shader::same_kind(params::$field().kind, <$kind as Scalar>::KIND),
+                    concat!("parameter `", stringify!($field), "` differs from the shader's"),
+                );
+            )*
+            assert!(params::SIZE == std::mem::size_of::<$name>(), "sizes differ");
+            assert!(params::FIELDS == [$(stringify!($field)),*].len(), "field counts differ");
+        };
+    };
+}
+
+include!(concat!(env!("OUT_DIR"), "/shaders.rs"));

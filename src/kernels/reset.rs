@@ -1,0 +1,93 @@
+//! Starts new episodes. Shader: `shaders/world/reset.wgsl`.
+
+use super::layout::{end, real, whole};
+use super::rng::{gaussian, index_below, random4, uniform01};
+use crate::gpu::kernel::groups;
+use crate::gpu::{Buffer, Gpu, shader};
+
+crate::shader_params! {
+    pub struct Params for reset {
+        pub envs: u32,
+        pub candidates: u32,
+        pub seed: u32,
+        /// Steps of the run so far: the random numbers' counter.
+        pub clock: u32,
+        /// Where this step's ends begin in `ended`.
+        pub offset: u32,
+        /// 1 to start everywhere, whatever `ended` says.
+        pub everywhere: u32,
+        /// Half the side of the square of targets around the start, m.
+        pub half_side: f32,
+        /// Targets are farther than this, m.
+        pub reach: f32,
+    }
+}
+
+const START: u32 = 0;
+const TARGET: u32 = 1;
+const DRAWS: u32 = 16;
+
+pub fn launch(
+    gpu: &Gpu,
+    candidates: &Buffer<u32>,
+    ended: &Buffer<u32>,
+    real: &Buffer<f32>,
+    whole: &Buffer<u32>,
+    params: &Params,
+) {
+    gpu.launch(
+        &shader::RESET,
+        groups(&shader::RESET, params.envs as usize),
+        &[candidates, ended, real, whole],
+        params,
+    );
+}
+
+pub fn twin(
+    candidates: &[u32],
+    ended: &[u32],
+    real: &mut [f32],
+    whole: &mut [u32],
+    params: &Params,
+) {
+    let envs = params.envs as usize;
+    for env in 0..envs {
+        if params.everywhere == 0 && ended[params.offset as usize + env] == end::RUNNING {
+            continue;
+        }
+        let draw = |stream| random4(params.seed, env as u32, params.clock, stream);
+        let start = index_below(draw(START)[0], params.candidates);
+        whole[whole::FRAME * envs + env] = candidates[start as usize];
+        whole[whole::AGE * envs + env] = 0;
+
+        let (east, north) = (gaussian(draw(START + 2)), gaussian(draw(START + 3)));
+        let length = (east * east + north * north).sqrt();
+        let heading = if length > 1e-6 {
+            [east / length, north / length]
+        } else {
+            [0.0, 1.0]
+        };
+
+        let target = (0..DRAWS)
+            .map(|tried| {
+                let bits = draw(TARGET + 4 * (tried + 1));
+                [bits[0], bits[1]].map(|bits| (2.0 * uniform01(bits) - 1.0) * params.half_side)
+            })
+            .find(|[x, z]| x * x + z * z > params.reach * params.reach)
+            .unwrap_or([params.half_side; 2]);
+
+        let values = [
+            (real::X, 0.0),
+            (real::Z, 0.0),
+            (real::HEADING_X, heading[0]),
+            (real::HEADING_Z, heading[1]),
+            (real::TARGET_X, target[0]),
+            (real::TARGET_Z, target[1]),
+            (real::RETURN, 0.0),
+            (real::TRAVELLED, 0.0),
+        ];
+        for (field, value) in values {
+            real[field * envs + env] = value;
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! Footwork trains character controllers: motion capture in, a policy that steers a full-body
+//! character out.
+
+pub mod gpu;
+pub mod kernels;
+pub mod motion;
+pub mod report;
+pub mod search;
+pub mod store;

@@ -1,0 +1,306 @@
+//! Everything motion matching and playback need of a set of clips, in plain arrays.
+
+use super::clip::Clip;
+use super::features::{AHEAD, FEATURE, PLAYED, POSE, extract};
+use super::frame::to_local;
+use super::normalise::{Normalisation, Weights};
+use super::roles::Roles;
+use super::skeleton::Skeleton;
+use crate::store::{Arrays, Format, StoreError};
+use glam::{Quat, Vec3};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Frames at a clip's end whose future is unknown: played, never matched.
+pub const TAIL: usize = AHEAD[2];
+/// Width of a feature row padded to whole quads of four, as shaders and SIMD read it.
+pub const PADDED: usize = 28;
+
+/// A clip's place in the database.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ClipRecord {
+    pub name: String,
+    pub first: usize,
+    pub frames: usize,
+    pub source: String,
+    pub licence: String,
+}
+
+/// Six frames of root motion from a candidate, in its character frame.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct RootMotion {
+    /// Ground displacement, m.
+    pub moved: [f32; 2],
+    /// New forward direction, unit.
+    pub turned: [f32; 2],
+    /// Length of the path, m.
+    pub length: f32,
+}
+
+/// All clips joined: one row a frame at 30 Hz.
+#[derive(Clone, Debug)]
+pub struct Database {
+    /// Bone lengths of the first clip; every clip has the same joints.
+    pub skeleton: Skeleton,
+    pub roles: Roles,
+    pub clips: Vec<ClipRecord>,
+    pub weights: Weights,
+    pub normalisation: Normalisation,
+    /// Normalised features, `[frame][PADDED]`, padded with zeros.
+    pub features: Vec<[f32; PADDED]>,
+    /// The character's smoothed path in its clip's world: x, z (m), heading x, heading z.
+    pub path: Vec<[f32; 4]>,
+    /// World position of the hips in the clip, m.
+    pub hips: Vec<Vec3>,
+    /// Local rotations, `[frame][joint]`.
+    pub rotations: Vec<Quat>,
+    /// Frames that can be matched, ascending. Search answers with places in this list.
+    pub candidates: Vec<u32>,
+    /// One a candidate.
+    pub motion: Vec<RootMotion>,
+    /// Changes with anything that changes what a policy meets: features and root motion.
+    pub fingerprint: u32,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    skeleton: Skeleton,
+    roles: Roles,
+    clips: Vec<ClipRecord>,
+    weights: Weights,
+    normalisation: Normalisation,
+    frames: usize,
+}
+
+/// No clip has a frame whose next second is known.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "nothing to match: every clip is shorter than the {TAIL} future frames of the trajectory feature; use longer clips"
+)]
+pub struct NothingToMatch;
+
+const FORMAT: Format = Format {
+    kind: "database",
+    version: 1,
+};
+
+impl Database {
+    /// Joins clips of one skeleton.
+    ///
+    /// # Errors
+    /// If no clip is longer than the 30 future frames a candidate needs.
+    pub fn build(clips: &[Clip], roles: Roles, weights: Weights) -> Result<Self, NothingToMatch> {
+        use rayon::prelude::*;
+        let clips: Vec<&Clip> = clips.iter().filter(|clip| clip.frames() > TAIL).collect();
+        let Some(first) = clips.first() else {
+            return Err(NothingToMatch);
+        };
+        let tracks: Vec<_> = clips.par_iter().map(|clip| extract(clip, &roles)).collect();
+        let (mut records, mut raw, mut path) = (Vec::new(), Vec::new(), Vec::new());
+        for (clip, track) in clips.iter().zip(&tracks) {
+            records.push(ClipRecord {
+                name: clip.name.clone(),
+                first: raw.len(),
+                frames: clip.frames(),
+                source: clip.source.clone(),
+                licence: clip.licence.clone(),
+            });
+            raw.extend_from_slice(&track.features);
+            path.extend(
+                track
+                    .ground
+                    .iter()
+                    .zip(&track.heading)
+                    .map(|(g, h)| [g[0], g[1], h[0], h[1]]),
+            );
+        }
+        let candidates = candidates(&records);
+        let normalisation = Normalisation::of(
+            candidates.iter().map(|&frame| &raw[frame as usize]),
+            &weights,
+        );
+        let features = raw
+            .iter()
+            .map(|row| pad(&normalisation.apply(row)))
+            .collect();
+        let header = Header {
+            skeleton: first.skeleton.clone(),
+            roles,
+            clips: records,
+            weights,
+            normalisation,
+            frames: raw.len(),
+        };
+        let hips = clips
+            .iter()
+            .flat_map(|clip| clip.positions.iter().copied())
+            .collect();
+        let rotations = clips
+            .iter()
+            .flat_map(|clip| clip.rotations.iter().copied())
+            .collect();
+        Ok(Self::join(header, features, path, hips, rotations))
+    }
+
+    fn join(
+        header: Header,
+        features: Vec<[f32; PADDED]>,
+        path: Vec<[f32; 4]>,
+        hips: Vec<Vec3>,
+        rotations: Vec<Quat>,
+    ) -> Self {
+        let candidates = candidates(&header.clips);
+        let motion: Vec<RootMotion> = candidates
+            .iter()
+            .map(|&frame| root_motion(&path, frame as usize))
+            .collect();
+        let mut hash = crc32fast::Hasher::new();
+        hash.update(bytemuck::cast_slice(&features));
+        hash.update(bytemuck::cast_slice(&candidates));
+        hash.update(bytemuck::cast_slice(&motion));
+        Database {
+            skeleton: header.skeleton,
+            roles: header.roles,
+            clips: header.clips,
+            weights: header.weights,
+            normalisation: header.normalisation,
+            features,
+            path,
+            hips,
+            rotations,
+            candidates,
+            motion,
+            fingerprint: hash.finalize(),
+        }
+    }
+
+    pub fn frames(&self) -> usize {
+        self.features.len()
+    }
+
+    pub fn minutes(&self) -> f32 {
+        self.frames() as f32 / super::RATE / 60.0
+    }
+
+    /// Normalised, padded features of one candidate.
+    pub fn row(&self, candidate: usize) -> &[f32; PADDED] {
+        &self.features[self.candidates[candidate] as usize]
+    }
+
+    /// Normalised, padded features of all candidates.
+    pub fn rows(&self) -> Vec<[f32; PADDED]> {
+        self.candidates
+            .iter()
+            .map(|&frame| self.features[frame as usize])
+            .collect()
+    }
+
+    /// Ground velocity (m/s, character frame: left, forward) and turning rate (degrees a second,
+    /// positive to the left) of every frame but the last of its clip.
+    pub fn ground_motion(&self) -> Vec<([f32; 2], f32)> {
+        let frames = self
+            .clips
+            .iter()
+            .flat_map(|clip| clip.first..clip.first + clip.frames - 1);
+        frames
+            .map(|frame| {
+                let ([x, z, hx, hz], next) = (self.path[frame], self.path[frame + 1]);
+                let moved = to_local([next[0] - x, next[1] - z], [hx, hz]);
+                let turned = to_local([next[2], next[3]], [hx, hz]);
+                let rate = super::RATE;
+                (
+                    moved.map(|v| v * rate),
+                    turned[0].atan2(turned[1]).to_degrees() * rate,
+                )
+            })
+            .collect()
+    }
+
+    /// Writes one checksummed file, whole or not at all.
+    pub fn save(&self, path: &Path) -> Result<(), StoreError> {
+        let header = Header {
+            skeleton: self.skeleton.clone(),
+            roles: self.roles,
+            clips: self.clips.clone(),
+            weights: self.weights,
+            normalisation: self.normalisation.clone(),
+            frames: self.frames(),
+        };
+        let mut arrays = Arrays::default();
+        arrays.put("features", self.features.as_flattened());
+        arrays.put("path", self.path.as_flattened());
+        arrays.put(
+            "hips",
+            &self.hips.iter().map(Vec3::to_array).collect::<Vec<_>>(),
+        );
+        arrays.put(
+            "rotations",
+            &self
+                .rotations
+                .iter()
+                .map(Quat::to_array)
+                .collect::<Vec<_>>(),
+        );
+        crate::store::save(path, FORMAT, &header, &arrays)
+    }
+
+    /// Reads a file written by [`Database::save`].
+    pub fn load(path: &Path) -> Result<Self, StoreError> {
+        let (header, mut arrays) = crate::store::load::<Header>(path, FORMAT)?;
+        let damaged = |why: &str| StoreError::Damaged {
+            path: path.to_path_buf(),
+            why: why.to_string(),
+        };
+        let features: Vec<[f32; PADDED]> = arrays
+            .take("features")
+            .ok_or_else(|| damaged("no features"))?;
+        let ground: Vec<[f32; 4]> = arrays.take("path").ok_or_else(|| damaged("no path"))?;
+        let hips: Vec<[f32; 3]> = arrays.take("hips").ok_or_else(|| damaged("no hips"))?;
+        let rotations: Vec<[f32; 4]> = arrays
+            .take("rotations")
+            .ok_or_else(|| damaged("no rotations"))?;
+        let (frames, joints) = (header.frames, header.skeleton.joints());
+        let mut end = 0;
+        let consecutive = header.clips.iter().all(|clip| {
+            let fits = clip.first == end && clip.frames > TAIL;
+            end = clip.first.saturating_add(clip.frames);
+            fits
+        });
+        let sizes = [features.len(), ground.len(), hips.len(), end];
+        if !consecutive || sizes != [frames; 4] || rotations.len() != frames * joints {
+            return Err(damaged("clips and arrays do not fit together"));
+        }
+        let hips = hips.into_iter().map(Vec3::from_array).collect();
+        let rotations = rotations.into_iter().map(Quat::from_array).collect();
+        Ok(Self::join(header, features, ground, hips, rotations))
+    }
+}
+
+fn pad(row: &[f32; FEATURE]) -> [f32; PADDED] {
+    std::array::from_fn(|i| if i < FEATURE { row[i] } else { 0.0 })
+}
+
+fn candidates(clips: &[ClipRecord]) -> Vec<u32> {
+    clips
+        .iter()
+        .flat_map(|clip| clip.first as u32..(clip.first + clip.frames - TAIL) as u32)
+        .collect()
+}
+
+fn root_motion(path: &[[f32; 4]], frame: usize) -> RootMotion {
+    let [x, z, hx, hz] = path[frame];
+    let [x6, z6, hx6, hz6] = path[frame + PLAYED];
+    let heading = [hx, hz];
+    let length = path[frame..=frame + PLAYED]
+        .windows(2)
+        .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]))
+        .sum();
+    RootMotion {
+        moved: to_local([x6 - x, z6 - z], heading),
+        turned: to_local([hx6, hz6], heading),
+        length,
+    }
+}
+
+const _: () = assert!(PADDED >= FEATURE && PADDED.is_multiple_of(4) && POSE < FEATURE);

@@ -1,0 +1,96 @@
+//! What can go wrong between a file and a motion.
+
+use std::path::{Path, PathBuf};
+
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Each message says what is wrong, where, and what to do about it.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    #[error("cannot read {}: {source}; check that it exists and may be read", .path.display())]
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+
+    #[error("cannot write {}: {source}; nothing was left there; check the folder, its rights and the free space", .path.display())]
+    Write {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+
+    #[error("{} holds more than {limit} bytes, too many for one file of motion; cut it into shorter recordings", .path.display())]
+    TooLarge { path: PathBuf, limit: u64 },
+
+    /// A BVH file that breaks the format; `problem` ends with what to do where that is not plain.
+    #[error("{}, line {line}: {problem}", .path.display())]
+    Bvh {
+        path: PathBuf,
+        line: usize,
+        problem: String,
+    },
+
+    /// A clip that has no faithful form as a BVH file.
+    #[error("cannot write the clip '{clip}' as BVH: {problem}")]
+    Unwritable { clip: String, problem: String },
+
+    #[error("{}, line {line}: {problem}; correct that line of the manifest, or move the manifest away to have T-poses and units detected", .path.display())]
+    Manifest {
+        path: PathBuf,
+        line: usize,
+        problem: String,
+    },
+
+    #[error("{}: {problem}", .path.display())]
+    RolesFile { path: PathBuf, problem: String },
+
+    #[error(
+        "unknown skeleton: no joint found for {missing}; its joints are {joints}. Give a roles \
+         file: lines like `left_foot = \"joint name\"`, one for each of the roles named first"
+    )]
+    MissingRoles { missing: String, joints: String },
+
+    #[error(
+        "the roles do not fit the skeleton: {problem}; give a roles file that names other joints"
+    )]
+    Roles { problem: String },
+
+    #[error("no metres per file unit can be found: {problem}; give the unit in metres")]
+    Unit { problem: String },
+
+    #[error(
+        "cannot mirror: {problem}; import without mirroring, or rename the joints so that left and right pair up"
+    )]
+    Mirror { problem: String },
+
+    #[error("two different skeletons in one folder: {} and {} differ, {difference}; put them in folders of their own", .first.display(), .second.display())]
+    Skeletons {
+        first: PathBuf,
+        second: PathBuf,
+        difference: String,
+    },
+
+    #[error("no .bvh file in {}; {advice}", .path.display())]
+    NoFiles { path: PathBuf, advice: String },
+
+    #[error("no usable clip in {}: {reasons}; each needs {frames} frames at 30 Hz besides its T-poses", .path.display())]
+    NoClips {
+        path: PathBuf,
+        reasons: String,
+        frames: usize,
+    },
+
+    /// An error of a function that knows no files, met while working on this one.
+    #[error("{}: {source}", .path.display())]
+    In { path: PathBuf, source: Box<Error> },
+}
+
+impl Error {
+    /// The same error, saying which file it was met in.
+    pub fn within(self, path: &Path) -> Error {
+        Error::In {
+            path: path.to_path_buf(),
+            source: Box::new(self),
+        }
+    }
+}

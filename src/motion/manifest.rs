@@ -1,0 +1,127 @@
+//! `manifest.csv`: what is known about the recordings of a folder.
+
+use super::error::{Error, Result};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// What a manifest says about one recording; absent or empty columns leave the default.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Entry {
+    /// Frames of the file to drop at its head and tail.
+    pub skip_head: usize,
+    pub skip_tail: usize,
+    /// Metres per file unit.
+    pub unit_m: Option<f32>,
+    pub licence: String,
+    pub source: String,
+}
+
+/// Entries by the `file` column: a path relative to the manifest's folder, with slashes.
+pub type Manifest = HashMap<String, Entry>;
+
+/// Reads a manifest; `None` if there is no such file.
+///
+/// A comma separated table. Its first row names the columns; only `file` must be there. Fields
+/// may be quoted, because descriptions have commas in them.
+pub fn read(path: &Path) -> Result<Option<Manifest>> {
+    match std::fs::read_to_string(path) {
+        Ok(text) => parse(&text, path).map(Some),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(Error::Read {
+            path: path.to_path_buf(),
+            source,
+        }),
+    }
+}
+
+/// Reads the text of a manifest; `path` is only for messages.
+pub fn parse(text: &str, path: &Path) -> Result<Manifest> {
+    let fault = |line, problem: String| Error::Manifest {
+        path: path.to_path_buf(),
+        line,
+        problem,
+    };
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut rows = rows(text)
+        .map_err(|line| fault(line, "a quote that is never closed".to_string()))?
+        .into_iter();
+    let (line, header) = rows.next().unwrap_or_default();
+    if !header.iter().any(|name| name == "file") {
+        let what = "the first row names the columns, and 'file' must be among them";
+        return Err(fault(line.max(1), what.to_string()));
+    }
+    let mut manifest = Manifest::new();
+    for (line, fields) in rows {
+        if fields.len() != header.len() {
+            let (found, wanted) = (fields.len(), header.len());
+            let what = format!("{found} fields where the first row names {wanted} columns");
+            return Err(fault(line, what));
+        }
+        let row: HashMap<&str, &str> = header
+            .iter()
+            .map(String::as_str)
+            .zip(fields.iter().map(String::as_str))
+            .collect();
+        let entry = entry(&row).map_err(|problem| fault(line, problem))?;
+        if manifest.insert(row["file"].to_string(), entry).is_some() {
+            return Err(fault(line, format!("a second row for '{}'", row["file"])));
+        }
+    }
+    Ok(manifest)
+}
+
+fn entry(row: &HashMap<&str, &str>) -> std::result::Result<Entry, String> {
+    let text = |column: &str| row.get(column).map_or("", |field| field.trim());
+    let frames = |column: &str| match text(column) {
+        "" => Ok(0),
+        field => field
+            .parse()
+            .map_err(|_| format!("{column} is '{field}', not a number of frames")),
+    };
+    let unit_m = match text("unit_m") {
+        "" => None,
+        field => match field.parse::<f32>() {
+            Ok(unit) if unit.is_finite() && unit > 0.0 => Some(unit),
+            _ => return Err(format!("unit_m is '{field}', not a length in metres")),
+        },
+    };
+    Ok(Entry {
+        skip_head: frames("skip_head")?,
+        skip_tail: frames("skip_tail")?,
+        unit_m,
+        licence: text("licence").to_string(),
+        source: text("source").to_string(),
+    })
+}
+
+/// Rows with the line each begins on (from 1); the error is the line of an open quote.
+fn rows(text: &str) -> std::result::Result<Vec<(usize, Vec<String>)>, usize> {
+    let mut rows = Vec::new();
+    let (mut row, mut field) = (Vec::new(), String::new());
+    let (mut line, mut begin, mut quoted) = (1, 1, None);
+    let mut chars = text.chars().peekable();
+    while let Some(c) = chars.next() {
+        line += usize::from(c == '\n');
+        match c {
+            '"' if quoted.is_some() && chars.next_if_eq(&'"').is_some() => field.push('"'),
+            '"' if quoted.is_some() => quoted = None,
+            '"' if field.is_empty() => quoted = Some(line),
+            ',' if quoted.is_none() => row.push(std::mem::take(&mut field)),
+            '\r' if quoted.is_none() => {}
+            '\n' if quoted.is_none() => {
+                row.push(std::mem::take(&mut field));
+                rows.push((begin, std::mem::take(&mut row)));
+                begin = line;
+            }
+            _ => field.push(c),
+        }
+    }
+    if let Some(line) = quoted {
+        return Err(line);
+    }
+    row.push(field);
+    rows.push((begin, row));
+    // Empty lines, the one after the last line end among them, are no rows.
+    rows.retain(|(_, row)| row.iter().any(|field| !field.is_empty()));
+    Ok(rows)
+}

@@ -1,0 +1,22 @@
+//! Motion: recordings, the procedural performer, features and the database.
+
+pub mod bvh;
+pub mod clip;
+pub mod database;
+pub mod error;
+pub mod features;
+pub mod frame;
+pub mod import;
+pub mod manifest;
+pub mod mirror;
+pub mod normalise;
+pub mod performer;
+pub mod resample;
+pub mod roles;
+pub mod skeleton;
+pub mod smooth;
+pub mod tpose;
+pub mod units;
+
+/// Frames a second of everything behind the import.
+pub const RATE: f32 = 30.0;

@@ -1,0 +1,147 @@
+//! One mean a dimension, one deviation a group, one weight a group.
+
+use super::features::{FEATURE, POSE};
+use serde::{Deserialize, Serialize};
+
+/// Importance of each group of features in the search.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Weights {
+    pub foot_position: f32,
+    pub foot_velocity: f32,
+    pub root_velocity: f32,
+    pub trajectory_position: f32,
+    pub trajectory_direction: f32,
+}
+
+impl Weights {
+    /// The paper names none.
+    pub const PAPER: Weights = Weights {
+        foot_position: 1.0,
+        foot_velocity: 1.0,
+        root_velocity: 1.0,
+        trajectory_position: 1.0,
+        trajectory_direction: 1.0,
+    };
+    /// As in Daniel Holden's Motion-Matching.
+    pub const ORANGEDUCK: Weights = Weights {
+        foot_position: 0.75,
+        trajectory_direction: 1.5,
+        ..Weights::PAPER
+    };
+
+    fn of(&self, group: usize) -> f32 {
+        match group {
+            0 | 1 => self.foot_position,
+            2 | 3 => self.foot_velocity,
+            4 => self.root_velocity,
+            5 => self.trajectory_position,
+            _ => self.trajectory_direction,
+        }
+    }
+}
+
+/// Maps features between metres and the normalised space of the search:
+/// `normalised = (feature - mean) * scale`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Normalisation {
+    pub mean: [f32; FEATURE],
+    pub scale: [f32; FEATURE],
+}
+
+/// Each foot position, each foot velocity, root velocity, trajectory positions, directions.
+const GROUPS: usize = 7;
+
+fn group(dimension: usize) -> usize {
+    if dimension < POSE {
+        dimension / 3
+    } else {
+        5 + (dimension - POSE) % 4 / 2
+    }
+}
+
+impl Normalisation {
+    /// From the rows that can be matched. A group that never varies is left unscaled.
+    pub fn of<'a>(rows: impl Iterator<Item = &'a [f32; FEATURE]>, weights: &Weights) -> Self {
+        let (mut count, mut sum, mut square) = (0.0, [0.0f64; FEATURE], [0.0f64; FEATURE]);
+        for row in rows {
+            count += 1.0;
+            for i in 0..FEATURE {
+                let value = f64::from(row[i]);
+                sum[i] += value;
+                square[i] += value * value;
+            }
+        }
+        let mean = sum.map(|s| s / count);
+        let (mut variance, mut members) = ([0.0; GROUPS], [0.0; GROUPS]);
+        for i in 0..FEATURE {
+            variance[group(i)] += (square[i] / count - mean[i] * mean[i]).max(0.0);
+            members[group(i)] += 1.0;
+        }
+        let scale = std::array::from_fn(|i| {
+            let deviation = (variance[group(i)] / members[group(i)]).sqrt();
+            let deviation = if deviation > 1e-6 {
+                deviation as f32
+            } else {
+                1.0
+            };
+            weights.of(group(i)) / deviation
+        });
+        Normalisation {
+            mean: mean.map(|m| m as f32),
+            scale,
+        }
+    }
+
+    pub fn apply(&self, row: &[f32; FEATURE]) -> [f32; FEATURE] {
+        std::array::from_fn(|i| (row[i] - self.mean[i]) * self.scale[i])
+    }
+
+    /// Metres back from a normalised trajectory (an action).
+    pub fn trajectory(&self, action: &[f32]) -> Vec<f32> {
+        action
+            .iter()
+            .enumerate()
+            .map(|(i, a)| a / self.scale[POSE + i] + self.mean[POSE + i])
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dimensions_fall_into_their_groups() {
+        assert_eq!(
+            (0..FEATURE).map(group).collect::<Vec<_>>(),
+            [
+                0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 5, 5, 6, 6, 5, 5, 6, 6, 5, 5, 6, 6
+            ]
+        );
+    }
+
+    #[test]
+    fn the_mean_variance_of_a_group_becomes_the_squared_weight() {
+        let rows: Vec<[f32; FEATURE]> = (0..200)
+            .map(|k| std::array::from_fn(|i| ((k * (i + 3)) % 17) as f32 * (i as f32 + 1.0)))
+            .collect();
+        let normalisation = Normalisation::of(rows.iter(), &Weights::ORANGEDUCK);
+        let normal: Vec<_> = rows.iter().map(|row| normalisation.apply(row)).collect();
+        for g in 0..GROUPS {
+            let members: Vec<usize> = (0..FEATURE).filter(|&i| group(i) == g).collect();
+            let mut variance = 0.0;
+            for &i in &members {
+                let mean = normal.iter().map(|row| row[i]).sum::<f32>() / 200.0;
+                assert!(mean.abs() < 1e-4);
+                variance += normal
+                    .iter()
+                    .map(|row| (row[i] - mean).powi(2))
+                    .sum::<f32>()
+                    / 200.0;
+            }
+            let weight = Weights::ORANGEDUCK.of(g);
+            assert!((variance / members.len() as f32 - weight * weight).abs() < 1e-3);
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! The performer: synthetic locomotion, the data set that needs no recordings.
+//!
+//! A random schedule of commands (`plan`) is followed by a point with a heading (`track`).
+//! Stride timing (`gait`) and footfalls (`footfall`) are planned on that track, whose future
+//! is known; the feet (`feet`) move from one to the next, the pelvis and the upper body
+//! (`body`) follow the gait, and the legs (`legs`) join pelvis and feet.
+
+mod body;
+mod ease;
+mod feet;
+mod figure;
+mod footfall;
+mod gait;
+mod legs;
+mod plan;
+mod random;
+mod track;
+
+use super::RATE;
+use super::clip::Clip;
+use super::roles::Roles;
+use body::{Bearing, Manner};
+use feet::Foot;
+use figure::{FOOT, HIPS, JOINTS, LEG, TOE, UP_LEG};
+use glam::{Quat, Vec3};
+use random::Random;
+use rayon::prelude::*;
+use track::Track;
+
+/// Minutes of the default data set: a row count like that of real locomotion sets.
+pub const MINUTES: f32 = 39.0;
+/// Seconds of the shortest and the longest clip.
+const CLIP_SECONDS: (f32, f32) = (25.0, 55.0);
+/// Frames planned beyond a clip's end, so that its last footfalls know where they lead.
+const AFTERMATH: usize = 60;
+/// Frames over which the hips prepare for, and recover from, a long reach of a leg.
+const REACH_WINDOW: usize = 3;
+
+/// A clip and what was meant by it.
+pub struct Take {
+    pub clip: Clip,
+    /// For each frame, left and right: the toe joint is fixed in the world, from the end of the
+    /// landing until the foot leaves.
+    pub planted: Vec<[bool; 2]>,
+    /// For each frame, the planned velocity over the ground (m/s, y = 0).
+    pub velocity: Vec<Vec3>,
+}
+
+/// Synthetic locomotion of a total of `minutes`, the same bits for the same `seed`.
+pub fn perform(seed: u64, minutes: f32) -> (Vec<Clip>, Roles) {
+    let clips = takes(seed, minutes).into_iter().map(|take| take.clip);
+    (clips.collect(), figure::roles())
+}
+
+/// As [`perform`], with the plans behind the clips.
+pub fn takes(seed: u64, minutes: f32) -> Vec<Take> {
+    lengths(seed, minutes)
+        .into_par_iter()
+        .enumerate()
+        .map(|(index, frames)| take(seed, index, frames))
+        .collect()
+}
+
+/// Frames of each clip; together they are exactly as long as asked for.
+fn lengths(seed: u64, minutes: f32) -> Vec<usize> {
+    let mut random = Random::new(seed, u64::MAX);
+    let mut left = (minutes * 60.0 * RATE).round() as usize;
+    let mut lengths = Vec::new();
+    while left > 0 {
+        let drawn = (random.range(CLIP_SECONDS.0, CLIP_SECONDS.1) * RATE) as usize;
+        // A rest too short for a clip of its own is added to the last one.
+        let short = left < drawn + (CLIP_SECONDS.0 * RATE) as usize;
+        let frames = if short { left } else { drawn };
+        lengths.push(frames);
+        left -= frames;
+    }
+    lengths
+}
+
+fn take(seed: u64, index: usize, frames: usize) -> Take {
+    let mut random = Random::new(seed, index as u64);
+    let manner = Manner::draw(&mut random);
+    let planned = frames + AFTERMATH;
+    let commands = plan::schedule(&mut random, planned as f32 / RATE);
+    let track = Track::follow(&commands, planned);
+    let rhythm = gait::Rhythm::of(&track, &mut random);
+    let stances = footfall::stances(&track, &rhythm);
+
+    let bearings: Vec<Bearing> = (0..frames)
+        .map(|frame| Bearing::at(&track, &manner, rhythm.phase[frame], frame as f32 / RATE))
+        .collect();
+    let feet: Vec<[Foot; 2]> = (0..frames)
+        .map(|frame| {
+            let time = frame as f32 / RATE;
+            [0, 1].map(|side| feet::foot(&track, &stances[side], &stances[1 - side], side, time))
+        })
+        .collect();
+    let mut pelvis: Vec<(Vec3, Quat)> = bearings
+        .iter()
+        .map(|bearing| bearing.pelvis(&manner))
+        .collect();
+    lower(&mut pelvis, &feet);
+
+    let mut rotations = Vec::with_capacity(frames * JOINTS);
+    for ((bearing, feet), &pelvis) in bearings.iter().zip(&feet).zip(&pelvis) {
+        rotations.extend(pose(bearing, &manner, feet, pelvis));
+    }
+    Take {
+        clip: Clip {
+            name: format!("synthetic_{index:03}"),
+            skeleton: figure::skeleton(),
+            rate: RATE,
+            positions: pelvis.iter().map(|&(position, _)| position).collect(),
+            rotations,
+            source: format!("synthetic: footwork's performer, seed {seed}"),
+            licence: "CC0-1.0".to_string(),
+        },
+        planted: feet
+            .iter()
+            .map(|pair| pair.map(|foot| foot.planted))
+            .collect(),
+        velocity: track.0[..frames]
+            .iter()
+            .map(|moment| moment.velocity)
+            .collect(),
+    }
+}
+
+/// Lowers the hips, smoothly, wherever a loaded leg would not reach its foot.
+fn lower(pelvis: &mut [(Vec3, Quat)], feet: &[[Foot; 2]]) {
+    let needs: Vec<f32> = pelvis
+        .iter()
+        .zip(feet)
+        .map(|(&(position, rotation), feet)| {
+            let need = |side: usize| {
+                let span = position + rotation * figure::hip(side) - feet[side].ankle;
+                legs::overreach(span.y, span.x.hypot(span.z))
+            };
+            let loaded = (0..2).filter(|&side| feet[side].air == 0.0);
+            loaded.map(need).fold(0.0, f32::max)
+        })
+        .collect();
+    for ((position, _), by) in pelvis.iter_mut().zip(legs::envelope(&needs, REACH_WINDOW)) {
+        position.y -= by;
+    }
+}
+
+/// The local rotations of all joints at one frame.
+fn pose(
+    bearing: &Bearing,
+    manner: &Manner,
+    feet: &[Foot; 2],
+    (position, rotation): (Vec3, Quat),
+) -> [Quat; JOINTS] {
+    let mut pose = [Quat::IDENTITY; JOINTS];
+    pose[HIPS] = rotation;
+    bearing.upper(manner, &mut pose);
+    for (side, foot) in feet.iter().enumerate() {
+        let hip = position + rotation * figure::hip(side);
+        let hinge = legs::hinge(rotation, foot.rotation);
+        let leg = legs::bend(hip, foot.ankle, hinge, foot.air);
+        pose[UP_LEG[side]] = rotation.inverse() * leg.thigh;
+        pose[LEG[side]] = leg.thigh.inverse() * leg.shin;
+        pose[FOOT[side]] = leg.shin.inverse() * foot.rotation;
+        pose[TOE[side]] = Quat::from_rotation_x(-foot.bend);
+    }
+    pose
+}

@@ -1,0 +1,58 @@
+//! A tree of joints with fixed bone offsets.
+
+use glam::{Quat, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// Joints in an order in which every parent precedes its children; joint 0 is the root.
+///
+/// Offsets are in metres, in the parent joint's frame, y up, the character facing +z in the
+/// common conventions (so its left side is +x). The root's own offset is not used: a
+/// [`Clip`](super::clip::Clip) gives the root's position for every frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Skeleton {
+    pub names: Vec<String>,
+    /// `None` for joint 0 only.
+    pub parents: Vec<Option<usize>>,
+    pub offsets: Vec<Vec3>,
+    /// Tips of the leaf bones (BVH "End Site"): the joint they hang on and their offset in metres.
+    pub ends: Vec<(usize, Vec3)>,
+}
+
+impl Skeleton {
+    pub fn joints(&self) -> usize {
+        self.names.len()
+    }
+
+    /// Same joints under the same parents; bone lengths may differ (subjects of one capture).
+    pub fn same_tree(&self, other: &Skeleton) -> bool {
+        self.names == other.names && self.parents == other.parents
+    }
+
+    /// Summed bone lengths from `low` up to its ancestor `high`: their distance when stretched.
+    pub fn reach(&self, high: usize, low: usize) -> f32 {
+        std::iter::successors(Some(low), |&joint| self.parents[joint])
+            .take_while(|&joint| joint != high)
+            .map(|joint| self.offsets[joint].length())
+            .sum()
+    }
+
+    /// Forward kinematics of one frame: world positions (m) and rotations of every joint.
+    /// `rotations` are local, one a joint; `root` is the root joint's world position.
+    pub fn world(&self, root: Vec3, rotations: &[Quat]) -> (Vec<Vec3>, Vec<Quat>) {
+        let mut positions = Vec::with_capacity(self.joints());
+        let mut world: Vec<Quat> = Vec::with_capacity(self.joints());
+        for (joint, &local) in rotations.iter().enumerate().take(self.joints()) {
+            match self.parents[joint] {
+                None => {
+                    positions.push(root);
+                    world.push(local);
+                }
+                Some(parent) => {
+                    positions.push(positions[parent] + world[parent] * self.offsets[joint]);
+                    world.push((world[parent] * local).normalize());
+                }
+            }
+        }
+        (positions, world)
+    }
+}

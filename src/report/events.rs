@@ -1,0 +1,207 @@
+//! Event files that TensorBoard reads: one scalar after another.
+//!
+//! A file is a sequence of records: the length of the data (u64), its checksum, the
+//! data, its checksum, all little-endian; a checksum is a CRC-32C, rotated and offset.
+//! The data of a record is one protobuf message `Event`; the few fields needed are
+//! encoded here by hand.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+/// TensorBoard takes any file with "tfevents" in its name for an event file. One fixed
+/// name lets a resumed run find the file that it has to append to.
+pub const FILE_NAME: &str = "events.out.tfevents.footwork";
+
+/// Length and its checksum before the data, the data's checksum behind it.
+const HEADER: usize = 12;
+const FOOTER: usize = 4;
+
+/// An open event file.
+///
+/// Dropping it writes what is left but cannot tell of a failure: call
+/// [`flush`](Self::flush) where that matters.
+pub struct EventWriter {
+    file: BufWriter<File>,
+    name: String,
+}
+
+impl EventWriter {
+    /// Starts the event file of the folder `dir`, which is made if missing. A previous
+    /// event file is replaced. `wall_time_s` is the present time in seconds since 1970.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    pub fn create(dir: &Path, wall_time_s: f64) -> io::Result<Self> {
+        let path = dir.join(FILE_NAME);
+        let name = path.display().to_string();
+        let file = fs::create_dir_all(dir)
+            .and_then(|()| File::create(&path))
+            .map_err(|error| failure(&name, &error))?;
+        let mut writer = Self {
+            file: BufWriter::new(file),
+            name,
+        };
+        writer.record(&version(wall_time_s))?;
+        writer.flush()?;
+        Ok(writer)
+    }
+
+    /// Goes on with the event file of the folder `dir`, or starts it if there is none.
+    ///
+    /// A record that was cut off when the program was killed is removed first, for
+    /// TensorBoard stops reading at a damaged one.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read or written, or is no event file.
+    pub fn append(dir: &Path, wall_time_s: f64) -> io::Result<Self> {
+        let path = dir.join(FILE_NAME);
+        if !path.exists() {
+            return Self::create(dir, wall_time_s);
+        }
+        let name = path.display().to_string();
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .open(&path)
+            .map_err(|error| failure(&name, &error))?;
+        drop_torn_end(&mut file).map_err(|error| failure(&name, &error))?;
+        Ok(Self {
+            file: BufWriter::new(file),
+            name,
+        })
+    }
+
+    /// Adds one value of the curve `tag`, such as "loss/value"; `wall_time_s` is its
+    /// time in seconds since 1970.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    pub fn scalar(&mut self, tag: &str, step: u64, wall_time_s: f64, value: f64) -> io::Result<()> {
+        self.record(&scalar(tag, step, wall_time_s, value))
+    }
+
+    /// Hands everything written so far to the operating system, so that TensorBoard
+    /// sees it.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    pub fn flush(&mut self) -> io::Result<()> {
+        self.file
+            .flush()
+            .map_err(|error| failure(&self.name, &error))
+    }
+
+    fn record(&mut self, data: &[u8]) -> io::Result<()> {
+        let length = (data.len() as u64).to_le_bytes();
+        let mut record = Vec::with_capacity(HEADER + data.len() + FOOTER);
+        record.extend(length);
+        record.extend(masked_crc(&length).to_le_bytes());
+        record.extend(data);
+        record.extend(masked_crc(data).to_le_bytes());
+        self.file
+            .write_all(&record)
+            .map_err(|error| failure(&self.name, &error))
+    }
+}
+
+fn failure(name: &str, error: &io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("event file {name}: {error}"))
+}
+
+/// TensorFlow's guard against checksums of data that contains checksums.
+fn masked_crc(data: &[u8]) -> u32 {
+    crc32c::crc32c(data)
+        .rotate_right(15)
+        .wrapping_add(0xa282_ead8)
+}
+
+/// Cuts the file after its last whole record and leaves the cursor there.
+fn drop_torn_end(file: &mut File) -> io::Result<()> {
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes)?;
+    let mut whole = 0;
+    while let Some(length) = record_length(&bytes[whole..]) {
+        whole += length;
+    }
+    if whole == 0 {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidData,
+            "not an event file",
+        ));
+    }
+    file.set_len(whole as u64)?;
+    file.seek(SeekFrom::Start(whole as u64))?;
+    Ok(())
+}
+
+/// Bytes of the record that `bytes` starts with, if it is whole and undamaged.
+fn record_length(bytes: &[u8]) -> Option<usize> {
+    let (length, rest) = bytes.split_first_chunk::<8>()?;
+    let (length_crc, rest) = rest.split_first_chunk::<4>()?;
+    let size = usize::try_from(u64::from_le_bytes(*length)).ok()?;
+    let (data, rest) = rest.split_at_checked(size)?;
+    let (data_crc, _) = rest.split_first_chunk::<4>()?;
+    let sound = u32::from_le_bytes(*length_crc) == masked_crc(length)
+        && u32::from_le_bytes(*data_crc) == masked_crc(data);
+    sound.then_some(HEADER + size + FOOTER)
+}
+
+/// `Event { wall_time = 1: double, file_version = 3: string }`
+fn version(wall_time_s: f64) -> Vec<u8> {
+    let mut event = Vec::new();
+    fixed64(&mut event, 1, wall_time_s);
+    bytes(&mut event, 3, b"brain.Event:2");
+    event
+}
+
+/// `Event { wall_time = 1: double, step = 2: int64, summary = 5: Summary }` with
+/// `Summary { value = 1: Value }` and `Value { tag = 1: string, simple_value = 2: float }`
+fn scalar(tag: &str, step: u64, wall_time_s: f64, number: f64) -> Vec<u8> {
+    let mut value = Vec::new();
+    bytes(&mut value, 1, tag.as_bytes());
+    fixed32(&mut value, 2, number as f32);
+    let mut summary = Vec::new();
+    bytes(&mut summary, 1, &value);
+    let mut event = Vec::new();
+    fixed64(&mut event, 1, wall_time_s);
+    integer(&mut event, 2, step);
+    bytes(&mut event, 5, &summary);
+    event
+}
+
+// The four kinds of protobuf fields used: a key (field number and wire type), then the
+// value.
+
+fn integer(message: &mut Vec<u8>, field: u8, value: u64) {
+    message.push(field << 3);
+    varint(message, value);
+}
+
+fn fixed64(message: &mut Vec<u8>, field: u8, value: f64) {
+    message.push(field << 3 | 1);
+    message.extend(value.to_le_bytes());
+}
+
+fn bytes(message: &mut Vec<u8>, field: u8, value: &[u8]) {
+    message.push(field << 3 | 2);
+    varint(message, value.len() as u64);
+    message.extend(value);
+}
+
+fn fixed32(message: &mut Vec<u8>, field: u8, value: f32) {
+    message.push(field << 3 | 5);
+    message.extend(value.to_le_bytes());
+}
+
+fn varint(message: &mut Vec<u8>, mut value: u64) {
+    while value >= 0x80 {
+        message.push(value as u8 | 0x80);
+        value >>= 7;
+    }
+    message.push(value as u8);
+}

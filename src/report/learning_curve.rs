@@ -1,0 +1,330 @@
+//! Learning curves: success, return and length of episodes over environment steps,
+//! laid out as the paper's figures 4 and 5.
+
+use std::path::Path;
+
+use plotters::style::RGBColor;
+
+use super::Error;
+use super::canvas::{Anchor, Canvas, Pixel, paint, text_width};
+use super::chart::{self, Axis, Frame, Plot};
+
+/// What training had reached at one moment. Values that are missing or not finite are
+/// left out of the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Point {
+    /// Environment steps taken so far.
+    pub steps: u64,
+    /// Training time so far, in seconds.
+    pub wall_s: f64,
+    /// Share of the finished episodes that reached the target, 0 to 1.
+    pub success: Option<f64>,
+    /// Mean undiscounted return of the finished episodes.
+    pub episode_return: Option<f64>,
+    /// Mean length of the finished episodes, in steps.
+    pub episode_length: Option<f64>,
+}
+
+/// A dashed vertical line at a moment worth naming.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mark {
+    /// Environment steps taken by then.
+    pub steps: u64,
+    /// A few words above the line, such as "20k · 30 s"; may be empty.
+    pub label: String,
+    /// Index into [`chart::PALETTE`].
+    pub colour: usize,
+}
+
+const WIDTH: f64 = 1600.0;
+const LEFT: f64 = 120.0;
+const RIGHT: f64 = 116.0;
+const TOP: f64 = 24.0;
+const PANEL: f64 = 270.0;
+const GAP: f64 = 34.0;
+/// Room below the panels for the two axes.
+const BOTTOM: f64 = 168.0;
+const LABEL_ROW: f64 = 30.0;
+const LABEL_ROWS: usize = 5;
+
+const CURVE: RGBColor = RGBColor(0x1e, 0x3a, 0x5f);
+
+/// One quantity over the steps.
+struct Panel {
+    label: &'static str,
+    value: fn(&Point) -> Option<f64>,
+    /// The axis, where the quantity itself sets its limits.
+    limits: Option<(f64, f64)>,
+    /// How the last value is written beside the curve.
+    format: fn(f64) -> String,
+}
+
+const PANELS: [Panel; 3] = [
+    Panel {
+        label: "success (%)",
+        value: |point| point.success.map(|share| 100.0 * share),
+        limits: Some((0.0, 104.0)),
+        format: |percent| format!("{percent:.1} %"),
+    },
+    Panel {
+        label: "episode return",
+        value: |point| point.episode_return,
+        limits: None,
+        format: brief,
+    },
+    Panel {
+        label: "episode length (steps)",
+        value: |point| point.episode_length,
+        limits: None,
+        format: brief,
+    },
+];
+
+/// Draws the curves, with `marks` through all panels, as a PNG.
+///
+/// # Errors
+///
+/// If the picture cannot be drawn or written.
+pub fn draw(path: &Path, points: &[Point], marks: &[Mark]) -> Result<(), Error> {
+    let end = rounded_end(points);
+    let labels = place_labels(marks, end)?;
+    let rows = labels.iter().map(|label| label.row + 1).max().unwrap_or(0);
+    let top = TOP + rows as f64 * LABEL_ROW;
+    let panels = PANELS.len() as f64;
+    let height = top + panels * PANEL + (panels - 1.0) * GAP + BOTTOM;
+    paint(path, WIDTH as u32, height as u32, |canvas| {
+        for (index, panel) in PANELS.iter().enumerate() {
+            let plot = plot(panel, points, end, top + index as f64 * (PANEL + GAP));
+            plot.draw_grid(canvas)?;
+            plot.label_y(canvas)?;
+            draw_panel(canvas, panel, &plot, points, marks)?;
+            if index + 1 == PANELS.len() {
+                plot.label_x(canvas)?;
+                draw_time(canvas, &plot, points)?;
+            }
+        }
+        labels.iter().try_for_each(|label| {
+            let at = (label.middle, top - (label.row as f64 + 0.5) * LABEL_ROW);
+            let colour = chart::colour(label.mark.colour);
+            canvas.text(&label.mark.label, at, Anchor::Centre, chart::SMALL, colour)
+        })
+    })
+}
+
+/// Where the axis of steps ends: at the last step, or at the next round number if that
+/// is so near that the axis would only just miss it.
+fn rounded_end(points: &[Point]) -> f64 {
+    let last = points.iter().map(|point| point.steps).max().unwrap_or(0);
+    let last = last.max(1) as f64;
+    chart::ticks(last, 1.01 * last, 1)
+        .first()
+        .map_or(last, |&round| round.max(last))
+}
+
+fn plot(panel: &Panel, points: &[Point], end: f64, top: f64) -> Plot {
+    let limits = panel.limits.unwrap_or_else(|| {
+        chart::extent(points.iter().filter_map(panel.value)).map_or((0.0, 1.0), roomy)
+    });
+    let mut x = Axis::new("environment steps", (0.0, end), 11);
+    x.format = chart::steps;
+    Plot {
+        frame: Frame {
+            left: LEFT,
+            top,
+            right: WIDTH - RIGHT,
+            bottom: top + PANEL,
+        },
+        x,
+        y: Axis::new(panel.label, limits, 6),
+    }
+}
+
+/// A little more than the values need, down to zero where they come near it.
+fn roomy((min, max): (f64, f64)) -> (f64, f64) {
+    let span = max - min;
+    let room = if span > 0.0 {
+        0.06 * span
+    } else {
+        (0.1 * max.abs()).max(1.0)
+    };
+    let bottom = if min >= 0.0 && min < span {
+        0.0
+    } else {
+        min - room
+    };
+    (bottom, max + room)
+}
+
+/// The raw values below the marks, the smooth curve above them.
+fn draw_panel(
+    canvas: &mut Canvas<'_>,
+    panel: &Panel,
+    plot: &Plot,
+    points: &[Point],
+    marks: &[Mark],
+) -> Result<(), Error> {
+    let raw: Vec<(f64, f64)> = points
+        .iter()
+        .filter_map(|point| Some((point.steps as f64, (panel.value)(point)?)))
+        .filter(|(_, value)| value.is_finite())
+        .collect();
+    let smooth = smoothed(&raw, plot.x.max / 120.0);
+    let place = |&(x, y): &(f64, f64)| plot.at(x, y.clamp(plot.y.min, plot.y.max));
+
+    let line: Vec<Pixel> = raw.iter().map(place).collect();
+    canvas.line(&line, chart::tint(CURVE, 0.25), 1.3)?;
+    draw_marks(canvas, plot, marks)?;
+    let line: Vec<Pixel> = smooth.iter().map(place).collect();
+    canvas.line(&line, CURVE, 3.2)?;
+
+    let Some(last) = smooth.last() else {
+        return plot.remark(canvas, "no finished episodes yet");
+    };
+    let (x, y) = place(last);
+    canvas.disc((x, y), 5.0, CURVE, 1.0)?;
+    let text = (panel.format)(last.1);
+    canvas.text(&text, (x + 14.0, y), Anchor::Left, chart::SMALL, CURVE)
+}
+
+/// Averages weighted by a bell curve of standard deviation `width`, along x.
+///
+/// `values` must be sorted by x, as a training's log is; the neighbourhoods are then
+/// found in one sweep.
+fn smoothed(values: &[(f64, f64)], width: f64) -> Vec<(f64, f64)> {
+    let reach = 3.0 * width;
+    let mut start = 0;
+    values
+        .iter()
+        .map(|&(x, _)| {
+            start += values[start..]
+                .iter()
+                .take_while(|near| near.0 < x - reach)
+                .count();
+            let (sum, weights) = values[start..]
+                .iter()
+                .take_while(|near| near.0 <= x + reach)
+                .map(|&(near, y)| ((-0.5 * ((near - x) / width).powi(2)).exp(), y))
+                .fold((0.0, 0.0), |(sum, weights), (weight, y)| {
+                    (sum + weight * y, weights + weight)
+                });
+            (x, sum / weights)
+        })
+        .collect()
+}
+
+fn draw_marks(canvas: &mut Canvas<'_>, plot: &Plot, marks: &[Mark]) -> Result<(), Error> {
+    for mark in marks {
+        if mark.steps as f64 <= plot.x.max {
+            let (x, _) = plot.at(mark.steps as f64, plot.y.min);
+            let (top, bottom) = (plot.frame.top, plot.frame.bottom);
+            canvas.dashes((x, top), (x, bottom), chart::colour(mark.colour), 2.0)?;
+        }
+    }
+    Ok(())
+}
+
+/// A mark's label and its place above the panels.
+struct Label<'a> {
+    mark: &'a Mark,
+    /// Where its middle lies, in pixels from the left.
+    middle: f64,
+    /// 0 is the row next to the panels.
+    row: usize,
+}
+
+/// Puts each label above its line, in the lowest row in which it is clear of the labels
+/// before it; a label that finds no room is left out.
+fn place_labels(marks: &[Mark], end: f64) -> Result<Vec<Label<'_>>, Error> {
+    let mut sorted: Vec<&Mark> = marks
+        .iter()
+        .filter(|mark| !mark.label.is_empty() && mark.steps as f64 <= end)
+        .collect();
+    sorted.sort_by_key(|mark| mark.steps);
+    let mut taken = [f64::NEG_INFINITY; LABEL_ROWS];
+    let mut labels = Vec::with_capacity(sorted.len());
+    for mark in sorted {
+        let (left, right) = (LEFT, WIDTH - RIGHT);
+        let half = text_width(&mark.label, chart::SMALL)? / 2.0;
+        let x = left + (right - left) * mark.steps as f64 / end;
+        let middle = x.min(right - half).max(left + half);
+        if let Some(row) = taken.iter().position(|&taken| taken < middle - half) {
+            taken[row] = middle + half + 16.0;
+            labels.push(Label { mark, middle, row });
+        }
+    }
+    Ok(labels)
+}
+
+/// A second axis below the steps: the training time at which they were reached.
+fn draw_time(canvas: &mut Canvas<'_>, plot: &Plot, points: &[Point]) -> Result<(), Error> {
+    let mut clock: Vec<(f64, f64)> = vec![(0.0, 0.0)];
+    for point in points {
+        let (steps, time) = clock.last().copied().unwrap_or_default();
+        if point.wall_s.is_finite() && point.wall_s > time && point.steps as f64 > steps {
+            clock.push((point.steps as f64, point.wall_s));
+        }
+    }
+    if clock.len() < 2 {
+        return Ok(());
+    }
+    let interval = interval(clock.last().map_or(0.0, |last| last.1));
+    let Frame {
+        left,
+        right,
+        bottom,
+        ..
+    } = plot.frame;
+    let y = bottom + 88.0;
+    canvas.line(&[(left, y), (right, y)], chart::FRAME, 1.2)?;
+    let mut next = 0.0;
+    for ends in clock.windows(2) {
+        let ((from, start), (to, end)) = (ends[0], ends[1]);
+        while next <= end {
+            let steps = from + (to - from) * (next - start) / (end - start);
+            let (x, _) = plot.at(steps, plot.y.min);
+            canvas.line(&[(x, y), (x, y + 7.0)], chart::FRAME, 1.2)?;
+            let (text, at) = (duration(next), (x, y + 24.0));
+            canvas.text(&text, at, Anchor::Centre, chart::SMALL, chart::MUTED)?;
+            next += interval;
+        }
+    }
+    let at = ((left + right) / 2.0, y + 56.0);
+    canvas.text(
+        "training time",
+        at,
+        Anchor::Centre,
+        chart::NORMAL,
+        chart::INK,
+    )
+}
+
+/// A round interval, in seconds, that fits at most about ten times into `total`.
+fn interval(total: f64) -> f64 {
+    const ROUND: [f64; 14] = [
+        1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 900.0, 1800.0, 3600.0, 7200.0,
+    ];
+    let least = total / 10.0;
+    let hours = (least / 14400.0).ceil() * 14400.0;
+    ROUND
+        .into_iter()
+        .find(|&round| round >= least)
+        .unwrap_or(hours)
+}
+
+fn duration(seconds: f64) -> String {
+    let seconds = seconds.round() as u64;
+    let (hours, minutes, rest) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    match (hours, minutes, rest) {
+        (0, 0, _) => format!("{rest} s"),
+        (0, _, 0) => format!("{minutes} min"),
+        (0, _, _) => format!("{minutes}:{rest:02} min"),
+        (_, 0, _) => format!("{hours} h"),
+        (_, _, _) => format!("{hours}:{minutes:02} h"),
+    }
+}
+
+/// Three or four digits, as many as are worth reading.
+fn brief(value: f64) -> String {
+    let factor = if value.abs() < 100.0 { 100.0 } else { 1.0 };
+    chart::number((value * factor).round() / factor)
+}

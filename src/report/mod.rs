@@ -1,0 +1,29 @@
+//! What a run leaves behind for people: pictures, TensorBoard events and tables.
+//!
+//! The pictures share one look. [`picture`] writes a PNG whole or not at all,
+//! [`canvas`] draws smooth lines and text into one, [`chart`] adds the colours and
+//! the axes, and each of [`learning_curve`], [`trajectories`] and [`coverage`] is one
+//! figure. None of them needs a display, a window system or an installed font.
+//!
+//! [`events`] writes what TensorBoard reads, and [`table`] what a terminal shows.
+
+pub mod canvas;
+pub mod chart;
+pub mod coverage;
+pub mod events;
+pub mod font;
+pub mod learning_curve;
+pub mod picture;
+pub mod table;
+pub mod trajectories;
+
+/// Why a picture could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The drawing itself failed, before any file was touched.
+    #[error("cannot draw the picture: {0}")]
+    Draw(String),
+    /// The finished picture could not be written; the message names the file.
+    #[error(transparent)]
+    Write(#[from] std::io::Error),
+}

@@ -1,0 +1,253 @@
+//! Paths to their targets, seen from above: one panel for each stage of a training, as
+//! in the paper's figure 4 (c).
+
+use plotters::style::RGBColor;
+
+use super::Error;
+use super::canvas::{Anchor, Canvas, Pixel, paint, text_width};
+use super::chart::{self, Axis, Frame, Plot};
+
+/// One walk to one target.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Path {
+    /// The root's ground positions in order of time: world x and z, in metres. Points
+    /// that are not finite are left out.
+    pub points: Vec<[f32; 2]>,
+    /// World x and z of the target, in metres.
+    pub target: [f32; 2],
+    /// Whether the walk came within the target's circle. If not, the circle is dashed
+    /// and a cross marks where the walk ended.
+    pub reached: bool,
+    /// A few letters beside the target, such as the time to it: "2.4 s".
+    pub label: String,
+    /// Index into [`chart::PALETTE`].
+    pub colour: usize,
+}
+
+/// The walks of one panel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Group {
+    /// What the panel shows, such as "20k steps".
+    pub title: String,
+    pub paths: Vec<Path>,
+}
+
+/// Distance from the target at which it counts as reached, in metres.
+const TARGET_RADIUS: f64 = 0.5;
+
+const COLUMNS: usize = 4;
+const SIDE: f64 = 440.0;
+const LEFT: f64 = 110.0;
+const RIGHT: f64 = 24.0;
+const GAP: f64 = 28.0;
+const TITLE: f64 = 56.0;
+const BOTTOM: f64 = 76.0;
+
+/// Draws the groups side by side, to one scale, as a PNG. The viewer looks down, so
+/// z grows downwards and a turn to the left looks like one.
+///
+/// # Errors
+///
+/// If the picture cannot be drawn or written.
+pub fn draw(path: &std::path::Path, groups: &[Group]) -> Result<(), Error> {
+    let columns = groups.len().clamp(1, COLUMNS);
+    let rows = groups.len().div_ceil(COLUMNS).max(1);
+    let width = LEFT + columns as f64 * (SIDE + GAP) - GAP + RIGHT;
+    let height = rows as f64 * (TITLE + SIDE + BOTTOM);
+    let square = Square::around(groups);
+    let none = [Group {
+        title: String::new(),
+        paths: Vec::new(),
+    }];
+    let groups = if groups.is_empty() { &none } else { groups };
+    paint(path, width as u32, height as u32, |canvas| {
+        for (index, group) in groups.iter().enumerate() {
+            let (row, column) = (index / COLUMNS, index % COLUMNS);
+            let left = LEFT + column as f64 * (SIDE + GAP);
+            let top = row as f64 * (TITLE + SIDE + BOTTOM) + TITLE;
+            let plot = square.plot(left, top);
+            plot.draw_grid(canvas)?;
+            plot.label_x(canvas)?;
+            if column == 0 {
+                plot.label_y(canvas)?;
+            }
+            draw_group(canvas, &plot, group)?;
+        }
+        Ok(())
+    })
+}
+
+/// The part of the ground that all panels show, in metres.
+struct Square {
+    centre: (f64, f64),
+    half: f64,
+}
+
+impl Square {
+    /// The smallest square that shows every path and target, with room for the labels.
+    fn around(groups: &[Group]) -> Self {
+        const BESIDE: f64 = 1.6;
+        const ABOVE: f64 = 0.9;
+        let all = |axis: usize| {
+            let paths = groups.iter().flat_map(|group| &group.paths);
+            let values = paths.flat_map(move |path| path.points.iter().chain([&path.target]));
+            let values = values.filter(|point| finite(point));
+            chart::extent(values.map(|point| f64::from(point[axis]))).unwrap_or((0.0, 0.0))
+        };
+        let (x, z) = (all(0), all(1));
+        let half_x = (x.1 - x.0) / 2.0 + TARGET_RADIUS + BESIDE;
+        let half_z = (z.1 - z.0) / 2.0 + TARGET_RADIUS + ABOVE;
+        Self {
+            centre: ((x.0 + x.1) / 2.0, (z.0 + z.1) / 2.0),
+            half: half_x.max(half_z),
+        }
+    }
+
+    fn plot(&self, left: f64, top: f64) -> Plot {
+        // A plot grows upwards, but z grows downwards: the plot's y is -z.
+        let mut z = self.axis("z (m)", -self.centre.1);
+        z.format = |value| chart::number(-value);
+        Plot {
+            frame: Frame {
+                left,
+                top,
+                right: left + SIDE,
+                bottom: top + SIDE,
+            },
+            x: self.axis("x (m)", self.centre.0),
+            y: z,
+        }
+    }
+
+    /// Numbers every few metres, lines every metre while these do not crowd.
+    fn axis(&self, label: &'static str, centre: f64) -> Axis {
+        let (min, max) = (centre - self.half, centre + self.half);
+        let mut axis = Axis::new(label, (min, max), 7);
+        if self.half < 15.0 {
+            axis.lines = (min.ceil() as i32..=max.floor() as i32)
+                .map(f64::from)
+                .collect();
+        }
+        axis
+    }
+}
+
+fn draw_group(canvas: &mut Canvas<'_>, plot: &Plot, group: &Group) -> Result<(), Error> {
+    let middle = (plot.frame.left + plot.frame.right) / 2.0;
+    let at = (middle, plot.frame.top - 24.0);
+    canvas.text(&group.title, at, Anchor::Centre, chart::LARGE, chart::INK)?;
+    if group.paths.is_empty() {
+        return plot.remark(canvas, "no paths");
+    }
+    // All circles below all lines below all words.
+    for path in &group.paths {
+        draw_target(canvas, plot, path)?;
+    }
+    for path in &group.paths {
+        draw_path(canvas, plot, path)?;
+    }
+    for path in &group.paths {
+        draw_start(canvas, plot, path)?;
+        draw_label(canvas, plot, path)?;
+    }
+    Ok(())
+}
+
+fn draw_target(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
+    if !finite(&path.target) {
+        return Ok(());
+    }
+    let colour = chart::colour(path.colour);
+    let centre = place(plot, path.target);
+    let radius = radius(plot);
+    canvas.disc(centre, radius, colour, 0.14)?;
+    draw_circle(canvas, centre, radius, colour, path.reached)
+}
+
+fn draw_circle(
+    canvas: &mut Canvas<'_>,
+    centre: Pixel,
+    radius: f64,
+    colour: RGBColor,
+    whole: bool,
+) -> Result<(), Error> {
+    const CORNERS: u32 = 48;
+    let corner = |index: u32| {
+        let angle = f64::from(index) * std::f64::consts::TAU / f64::from(CORNERS);
+        (
+            centre.0 + radius * angle.cos(),
+            centre.1 + radius * angle.sin(),
+        )
+    };
+    for index in (0..CORNERS).filter(|index| whole || index % 4 < 2) {
+        canvas.line(&[corner(index), corner(index + 1)], colour, 2.0)?;
+    }
+    Ok(())
+}
+
+fn draw_path(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
+    let colour = chart::colour(path.colour);
+    let line = walked(plot, path);
+    canvas.line(&line, colour, 3.0)?;
+    match line.last() {
+        Some(&end) if path.reached => canvas.disc(end, 4.5, colour, 1.0),
+        Some(&end) => draw_cross(canvas, end, colour),
+        None => Ok(()),
+    }
+}
+
+fn draw_cross(canvas: &mut Canvas<'_>, (x, y): Pixel, colour: RGBColor) -> Result<(), Error> {
+    const ARM: f64 = 6.5;
+    canvas.line(&[(x - ARM, y - ARM), (x + ARM, y + ARM)], colour, 3.0)?;
+    canvas.line(&[(x - ARM, y + ARM), (x + ARM, y - ARM)], colour, 3.0)
+}
+
+fn draw_start(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
+    let Some(&start) = walked(plot, path).first() else {
+        return Ok(());
+    };
+    canvas.disc(start, 8.0, chart::INK, 1.0)?;
+    canvas.disc(start, 4.5, chart::tint(chart::INK, 0.0), 1.0)
+}
+
+/// Writes the label on the far side of the target, where the path does not run.
+fn draw_label(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
+    let start = path.points.iter().find(|point| finite(point));
+    if !finite(&path.target) || path.label.is_empty() {
+        return Ok(());
+    }
+    let target = place(plot, path.target);
+    let from = start.map_or(target, |&start| place(plot, start));
+    let (x, y) = (target.0 - from.0, target.1 - from.1);
+    let length = x.hypot(y);
+    let (x, y) = if length > 0.0 {
+        (x / length, y / length)
+    } else {
+        (0.0, -1.0)
+    };
+    let half = text_width(&path.label, chart::SMALL)? / 2.0;
+    let away = radius(plot) + 8.0;
+    let at = (
+        target.0 + x * (away + half),
+        target.1 + y * (away + chart::SMALL / 2.0),
+    );
+    let colour = chart::colour(path.colour);
+    canvas.text(&path.label, at, Anchor::Centre, chart::SMALL, colour)
+}
+
+fn walked(plot: &Plot, path: &Path) -> Vec<Pixel> {
+    let points = path.points.iter().filter(|point| finite(point));
+    points.map(|&point| place(plot, point)).collect()
+}
+
+fn place(plot: &Plot, [x, z]: [f32; 2]) -> Pixel {
+    plot.at(f64::from(x), -f64::from(z))
+}
+
+fn radius(plot: &Plot) -> f64 {
+    TARGET_RADIUS * (plot.frame.right - plot.frame.left) / (plot.x.max - plot.x.min)
+}
+
+fn finite(point: &[f32; 2]) -> bool {
+    point.iter().all(|value| value.is_finite())
+}

@@ -1,0 +1,207 @@
+//! A checksummed file of a JSON header and plain arrays: the form of databases and checkpoints.
+//!
+//! Layout, little-endian: the 8 bytes `footwork`, the kind (8 bytes, zero-padded), version
+//! (u32), CRC-32 of the rest (u32), length of the header (u64), header, arrays. Files are
+//! written beside their place and renamed: whole or not at all.
+
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// What went wrong with a file.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    #[error("cannot read {path}: {error}")]
+    Read {
+        path: PathBuf,
+        error: std::io::Error,
+    },
+    #[error("cannot write {path}: {error}")]
+    Write {
+        path: PathBuf,
+        error: std::io::Error,
+    },
+    #[error("{path} is not a footwork {kind}")]
+    Foreign { path: PathBuf, kind: &'static str },
+    #[error("{path} is a footwork {found}, not a {wanted}")]
+    OtherKind {
+        path: PathBuf,
+        found: String,
+        wanted: &'static str,
+    },
+    #[error(
+        "{path} has format version {found}; this program reads up to {known}: use a newer footwork"
+    )]
+    Newer {
+        path: PathBuf,
+        found: u32,
+        known: u32,
+    },
+    #[error("{path} is damaged ({why}): make it again or take another copy")]
+    Damaged { path: PathBuf, why: String },
+}
+
+/// Kind and version of a file.
+#[derive(Clone, Copy)]
+pub struct Format {
+    pub kind: &'static str,
+    pub version: u32,
+}
+
+const MAGIC: &[u8; 8] = b"footwork";
+const PREFIX: usize = 32;
+
+#[derive(Serialize, Deserialize)]
+struct Contents<H> {
+    header: H,
+    /// Name and number of four-byte values.
+    arrays: Vec<(String, u64)>,
+}
+
+/// Named arrays of four-byte values (f32, u32), as raw bytes.
+#[derive(Default)]
+pub struct Arrays(Vec<(String, Vec<u8>)>);
+
+impl Arrays {
+    pub fn put<T: bytemuck::Pod>(&mut self, name: &str, values: &[T]) {
+        self.0
+            .push((name.to_string(), bytemuck::cast_slice(values).to_vec()));
+    }
+
+    /// Takes an array out by name; `None` if the file has no such array or it has another shape.
+    pub fn take<T: bytemuck::Pod>(&mut self, name: &str) -> Option<Vec<T>> {
+        let at = self.0.iter().position(|(other, _)| other == name)?;
+        let (_, bytes) = self.0.swap_remove(at);
+        bytes
+            .len()
+            .is_multiple_of(size_of::<T>())
+            .then(|| bytemuck::pod_collect_to_vec(&bytes))
+    }
+}
+
+/// Writes a file whole or not at all.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+    let failed = |error| StoreError::Write {
+        path: path.to_path_buf(),
+        error,
+    };
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let mut file = tempfile::Builder::new()
+        .prefix(".footwork-")
+        .tempfile_in(folder)
+        .map_err(failed)?;
+    file.write_all(bytes).map_err(failed)?;
+    file.as_file().sync_all().map_err(failed)?;
+    // A temporary file is private; what it becomes is as readable as any other new file.
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        file.as_file()
+            .set_permissions(std::fs::Permissions::from_mode(0o644))
+            .map_err(failed)?;
+    }
+    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}
+
+/// Writes header and arrays.
+pub fn save<H: Serialize>(
+    path: &Path,
+    format: Format,
+    header: &H,
+    arrays: &Arrays,
+) -> Result<(), StoreError> {
+    let names = arrays
+        .0
+        .iter()
+        .map(|(name, bytes)| (name.clone(), bytes.len() as u64 / 4))
+        .collect();
+    let json = serde_json::to_vec(&Contents {
+        header,
+        arrays: names,
+    })
+    .map_err(|error| StoreError::Write {
+        path: path.to_path_buf(),
+        error: error.into(),
+    })?;
+    let mut rest = (json.len() as u64).to_le_bytes().to_vec();
+    rest.extend(json);
+    for (_, bytes) in &arrays.0 {
+        rest.extend(bytes);
+    }
+    let mut kind = [0; 8];
+    kind[..format.kind.len()].copy_from_slice(format.kind.as_bytes());
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(kind);
+    bytes.extend(format.version.to_le_bytes());
+    bytes.extend(crc32fast::hash(&rest).to_le_bytes());
+    bytes.extend(rest);
+    write_whole(path, &bytes)
+}
+
+/// Reads header and arrays back.
+pub fn load<H: DeserializeOwned>(path: &Path, format: Format) -> Result<(H, Arrays), StoreError> {
+    let bytes = std::fs::read(path).map_err(|error| StoreError::Read {
+        path: path.to_path_buf(),
+        error,
+    })?;
+    let damaged = |why: &str| StoreError::Damaged {
+        path: path.to_path_buf(),
+        why: why.to_string(),
+    };
+    if !bytes.starts_with(MAGIC) {
+        return Err(StoreError::Foreign {
+            path: path.to_path_buf(),
+            kind: format.kind,
+        });
+    }
+    if bytes.len() < PREFIX {
+        return Err(damaged("it ends within its first 32 bytes"));
+    }
+    let kind = String::from_utf8_lossy(&bytes[8..16])
+        .trim_end_matches('\0')
+        .to_string();
+    if kind != format.kind {
+        return Err(StoreError::OtherKind {
+            path: path.to_path_buf(),
+            found: kind,
+            wanted: format.kind,
+        });
+    }
+    let word =
+        |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+    if word(16) > format.version {
+        return Err(StoreError::Newer {
+            path: path.to_path_buf(),
+            found: word(16),
+            known: format.version,
+        });
+    }
+    let rest = &bytes[24..];
+    if crc32fast::hash(rest) != word(20) {
+        return Err(damaged("its checksum does not match its contents"));
+    }
+    let length = u64::from(word(24)) | u64::from(word(28)) << 32;
+    let json = usize::try_from(length)
+        .ok()
+        .and_then(|length| rest.get(8..8usize.checked_add(length)?));
+    let json = json.ok_or_else(|| damaged("its header is longer than the file"))?;
+    let contents: Contents<H> =
+        serde_json::from_slice(json).map_err(|error| damaged(&error.to_string()))?;
+    let mut data = &rest[8 + json.len()..];
+    let mut arrays = Arrays::default();
+    for (name, words) in contents.arrays {
+        let length = usize::try_from(words)
+            .ok()
+            .and_then(|words| words.checked_mul(4));
+        let (array, after) = length
+            .and_then(|length| data.split_at_checked(length))
+            .ok_or_else(|| damaged(&format!("array `{name}` is cut off")))?;
+        arrays.0.push((name, array.to_vec()));
+        data = after;
+    }
+    Ok((contents.header, arrays))
+}
