@@ -36,6 +36,11 @@ impl<T: Pod> Buffer<T> {
         Self::from_slice(gpu, &vec![T::zeroed(); len])
     }
 
+    /// `len` values of no meaning, for a kernel to write: memory comes from the device's pool.
+    pub fn empty(gpu: &Gpu, len: usize) -> Self {
+        Self::wrap(gpu.client.empty(len * size_of::<T>()), len)
+    }
+
     pub(super) fn wrap(handle: Handle, len: usize) -> Self {
         Self {
             handle,

@@ -46,7 +46,7 @@ pub fn twin(
     value: &[f32],
     next_value: &[f32],
     final_value: &[f32],
-    scale: [f32; 2],
+    scale: &[f32],
     advantage: &mut [f32],
     target_value: &mut [f32],
     params: &Params,

@@ -22,6 +22,10 @@ const CURVE: f32 = 7.0;
 /// The quickest steady turn (rad/s): 190 degrees a second.
 const FASTEST_TURN: f32 = 3.3;
 
+/// Out of a run (m/s), the chance to be sent back the other way: it would be too rare otherwise.
+const RUN: f32 = 3.0;
+const TURN_BACK: f32 = 0.25;
+
 const STAND: Command = Command {
     seconds: 1.0,
     speed: 0.0,
@@ -30,14 +34,19 @@ const STAND: Command = Command {
     turn: 0.0,
 };
 
-/// Commands for at least `seconds`, from rest to rest.
+/// Commands for at least `seconds`, beginning at rest.
 pub fn schedule(random: &mut Random, seconds: f32) -> Vec<Command> {
-    let mut commands = vec![STAND];
-    let mut total = STAND.seconds;
+    let mut commands = Vec::new();
+    let mut last = STAND;
+    let mut total = 0.0;
     while total < seconds {
-        let command = draw(random);
-        total += command.seconds;
-        commands.push(command);
+        commands.push(last);
+        total += last.seconds;
+        last = if last.speed > RUN && random.chance(TURN_BACK) {
+            turn_back(random)
+        } else {
+            draw(random)
+        };
     }
     commands
 }
@@ -120,6 +129,16 @@ fn dash_elsewhere(random: &mut Random) -> Command {
         seconds: random.range(1.2, 2.5),
         speed: random.range(1.0, 4.5),
         face: random.sign() * random.range(0.8, PI),
+        ..STAND
+    }
+}
+
+/// Running back, as in a shuttle run.
+fn turn_back(random: &mut Random) -> Command {
+    Command {
+        seconds: random.range(1.6, 2.6),
+        speed: random.range(3.0, 4.6),
+        face: random.sign() * random.range(2.4, PI),
         ..STAND
     }
 }

@@ -1,0 +1,255 @@
+//! `footwork data`.
+
+use super::Usage;
+use anyhow::{Context, Result};
+use clap::{Args, Subcommand, ValueEnum};
+use footwork::motion::database::{Database, TAIL};
+use footwork::motion::import::ImportOptions;
+use footwork::motion::normalise::Weights;
+use footwork::motion::{RATE, bvh, performer};
+use footwork::report::coverage::{self, Samples};
+use footwork::report::table::table;
+use footwork::train::data;
+use std::path::{Path, PathBuf};
+
+#[derive(Subcommand)]
+pub enum Data {
+    /// Make a database of BVH files
+    Import(Import),
+    /// Make a database of synthetic motion
+    Synth(Synth),
+    /// Say what a database or a folder of BVH files holds
+    Info(Info),
+}
+
+/// Importance of the groups of features in the search.
+#[derive(Clone, Copy, Default, ValueEnum)]
+enum WeightPreset {
+    /// All alike
+    #[default]
+    Paper,
+    /// Feet's places count less, directions more
+    Orangeduck,
+}
+
+impl From<WeightPreset> for Weights {
+    fn from(preset: WeightPreset) -> Self {
+        match preset {
+            WeightPreset::Paper => Weights::PAPER,
+            WeightPreset::Orangeduck => Weights::ORANGEDUCK,
+        }
+    }
+}
+
+#[derive(Args)]
+pub struct Import {
+    /// A folder of BVH files, or one of them
+    path: PathBuf,
+    /// The database file to write
+    #[arg(long, short, value_name = "FILE")]
+    out: PathBuf,
+    /// Metres of one unit of the files [default: found from the skeleton's height]
+    #[arg(long, value_name = "METRES")]
+    unit: Option<f32>,
+    /// A TOML file that names the joints of the roles that are not found by name
+    #[arg(long, value_name = "FILE")]
+    roles: Option<PathBuf>,
+    /// Add the left/right mirrored copy of every clip
+    #[arg(long)]
+    mirror: bool,
+    #[arg(long, value_enum, default_value = "paper")]
+    weights: WeightPreset,
+}
+
+#[derive(Args)]
+pub struct Synth {
+    /// The database file to write
+    #[arg(long, short, value_name = "FILE")]
+    out: PathBuf,
+    #[arg(long, default_value_t = performer::MINUTES)]
+    minutes: f32,
+    #[arg(long, default_value_t = data::SYNTHETIC_SEED)]
+    seed: u64,
+    /// Also write every clip as a BVH file to this folder
+    #[arg(long, value_name = "DIR")]
+    bvh: Option<PathBuf>,
+    #[arg(long, value_enum, default_value = "paper")]
+    weights: WeightPreset,
+}
+
+#[derive(Args)]
+pub struct Info {
+    /// A database file, a BVH file or a folder of them [default: the synthetic motion]
+    path: Option<PathBuf>,
+    /// Also draw speed against turning, and the directions of movement
+    #[arg(long, value_name = "PNG")]
+    picture: Option<PathBuf>,
+}
+
+impl Data {
+    pub fn run(self) -> Result<()> {
+        match self {
+            Data::Import(import) => import.run(),
+            Data::Synth(synth) => synth.run(),
+            Data::Info(info) => info.run(),
+        }
+    }
+}
+
+impl Import {
+    fn run(self) -> Result<()> {
+        let options = ImportOptions {
+            unit_m: self.unit,
+            roles: self.roles,
+            mirror: self.mirror,
+        };
+        let (database, notes) = data::from_bvh(&self.path, &options, self.weights.into())?;
+        for note in notes {
+            eprintln!("note: {note}");
+        }
+        save(&database, &self.out)
+    }
+}
+
+impl Synth {
+    fn run(self) -> Result<()> {
+        if !(self.minutes >= 0.1 && self.minutes <= 1000.0) {
+            return Err(Usage("--minutes must be from 0.1 to 1000".into()).into());
+        }
+        let (clips, roles) = performer::perform(self.seed, self.minutes);
+        if let Some(folder) = &self.bvh {
+            std::fs::create_dir_all(folder)
+                .with_context(|| format!("cannot make {}", folder.display()))?;
+            for clip in &clips {
+                bvh::write(&folder.join(format!("{}.bvh", clip.name)), clip)?;
+            }
+        }
+        save(
+            &Database::build(&clips, roles, self.weights.into())?,
+            &self.out,
+        )
+    }
+}
+
+fn save(database: &Database, path: &Path) -> Result<()> {
+    database.save(path)?;
+    println!(
+        "{}: {} clips, {:.1} minutes, {} candidates, fingerprint {:08x}",
+        path.display(),
+        database.clips.len(),
+        database.minutes(),
+        database.candidates.len(),
+        database.fingerprint,
+    );
+    Ok(())
+}
+
+impl Info {
+    fn run(self) -> Result<()> {
+        let (database, notes) = data::load(self.path.as_deref(), Weights::PAPER)?;
+        for note in notes {
+            eprintln!("note: {note}");
+        }
+        print!("{}", clips(&database));
+        println!(
+            "\n{} clips, {:.1} minutes, {} frames at {RATE} Hz, {} candidates, fingerprint {:08x}\n",
+            database.clips.len(),
+            database.minutes(),
+            database.frames(),
+            database.candidates.len(),
+            database.fingerprint,
+        );
+        let motion = database.ground_motion();
+        print!("{}", coverage_table(&motion));
+        if let Some(picture) = &self.picture {
+            let speed: Vec<f32> = motion
+                .iter()
+                .map(|(velocity, _)| velocity[0].hypot(velocity[1]))
+                .collect();
+            let turning: Vec<f32> = motion.iter().map(|&(_, turning)| turning).collect();
+            // Seen from above, right is positive; the character frame's x is left.
+            let velocity: Vec<[f32; 2]> = motion
+                .iter()
+                .map(|(velocity, _)| [-velocity[0], velocity[1]])
+                .collect();
+            let samples = Samples {
+                rate_hz: RATE,
+                speed: &speed,
+                turning: &turning,
+                velocity: &velocity,
+            };
+            coverage::draw(picture, &samples)?;
+            println!("\ncoverage drawn in {}", picture.display());
+        }
+        Ok(())
+    }
+}
+
+fn clips(database: &Database) -> String {
+    let rows: Vec<Vec<String>> = database
+        .clips
+        .iter()
+        .map(|clip| {
+            let (first, last) = (clip.first, clip.first + clip.frames - 1);
+            let walked: f32 = database.path[first..=last]
+                .windows(2)
+                .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]))
+                .sum();
+            let seconds = clip.frames as f32 / RATE;
+            vec![
+                clip.name.clone(),
+                format!("{seconds:.1}"),
+                (clip.frames - TAIL).to_string(),
+                format!("{:.2}", walked / seconds),
+                clip.licence.clone(),
+            ]
+        })
+        .collect();
+    table(
+        &["clip", "seconds", "candidates", "mean speed m/s", "licence"],
+        &rows,
+    )
+}
+
+/// Minutes by speed and by turning rate.
+fn coverage_table(motion: &[([f32; 2], f32)]) -> String {
+    const SPEEDS: [f32; 6] = [0.3, 1.0, 2.0, 3.0, 4.0, f32::INFINITY];
+    const TURNS: [f32; 4] = [20.0, 60.0, 120.0, f32::INFINITY];
+    let mut minutes = [[0.0f32; TURNS.len()]; SPEEDS.len()];
+    for (velocity, turning) in motion {
+        let speed = velocity[0].hypot(velocity[1]);
+        let row = SPEEDS
+            .iter()
+            .position(|&edge| speed < edge)
+            .unwrap_or(SPEEDS.len() - 1);
+        let column = TURNS
+            .iter()
+            .position(|&edge| turning.abs() < edge)
+            .unwrap_or(TURNS.len() - 1);
+        minutes[row][column] += 1.0 / RATE / 60.0;
+    }
+    let names = [
+        "standing < 0.3",
+        "0.3 to 1",
+        "1 to 2",
+        "2 to 3",
+        "3 to 4",
+        "4 and more",
+    ];
+    let rows: Vec<Vec<String>> = names
+        .iter()
+        .zip(minutes)
+        .map(|(name, row)| {
+            let cells = row.iter().map(|minutes| format!("{minutes:.2}"));
+            std::iter::once(name.to_string()).chain(cells).collect()
+        })
+        .collect();
+    let headers = [
+        "minutes at m/s",
+        "turning < 20 deg/s",
+        "20 to 60",
+        "60 to 120",
+        "120 and more",
+    ];
+    table(&headers, &rows)
+}

@@ -1,0 +1,134 @@
+//! `footwork eval`.
+
+use super::Usage;
+use anyhow::{Context, Result};
+use clap::Args;
+use footwork::report::table::table;
+use footwork::train::checkpoint::Checkpoint;
+use footwork::train::data;
+use footwork::train::evaluate::{Report, Scripted, Trained, evaluate};
+use footwork::train::folder::Folder;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Speeds the scripted baseline asks for, m/s.
+const SPEEDS: [f32; 8] = [0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.5, 4.0];
+
+#[derive(Args)]
+pub struct Eval {
+    /// A run's folder, or one of its checkpoints
+    run: PathBuf,
+    /// Episodes, the same ones for every policy
+    #[arg(long, default_value_t = 1000, value_name = "N")]
+    episodes: usize,
+    /// Judge scripted motion matching beside it: a straight trajectory to the target
+    #[arg(long)]
+    baseline: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+impl Eval {
+    pub fn run(self) -> Result<()> {
+        if self.episodes == 0 || self.episodes > 1_000_000 {
+            return Err(Usage("--episodes must be from 1 to 1000000".into()).into());
+        }
+        let (folder, path) = self.locate()?;
+        let config = folder.read_config()?;
+        let (database, _) = data::load(config.data.as_deref(), config.weights)?;
+        let checkpoint = Checkpoint::load_for(&path, database.fingerprint)?;
+        let (database, task) = (Arc::new(database), checkpoint.header.plane);
+        let trained = evaluate(&Trained::from(&checkpoint), &database, task, self.episodes)?;
+        let mut baseline = Vec::new();
+        if self.baseline {
+            for speed in SPEEDS {
+                let scripted = Scripted {
+                    database: &database,
+                    speed,
+                };
+                baseline.push((speed, evaluate(&scripted, &database, task, self.episodes)?));
+            }
+        }
+        match self.json {
+            true => print_json(&trained, &baseline),
+            false => {
+                println!(
+                    "{} at {} steps, {} episodes",
+                    path.display(),
+                    checkpoint.header.steps,
+                    self.episodes
+                );
+                print_table(&trained, &baseline);
+                Ok(())
+            }
+        }
+    }
+
+    /// The run's folder, and the checkpoint: the given one or the last.
+    fn locate(&self) -> Result<(Folder, PathBuf)> {
+        if self.run.is_file() {
+            let folder = self
+                .run
+                .parent()
+                .and_then(|checkpoints| checkpoints.parent());
+            let folder = folder.context("a checkpoint is judged inside its run's folder")?;
+            let folder = if folder.as_os_str().is_empty() {
+                std::path::Path::new(".")
+            } else {
+                folder
+            };
+            return Ok((Folder::open(folder)?, self.run.clone()));
+        }
+        let folder = Folder::open(&self.run)?;
+        let last = folder.checkpoint("last");
+        Ok((folder, last))
+    }
+}
+
+fn print_json(trained: &Report, baseline: &[(f32, Report)]) -> Result<()> {
+    let mut object = serde_json::to_value(trained)?;
+    if !baseline.is_empty() {
+        let rows: Result<Vec<_>, serde_json::Error> = baseline
+            .iter()
+            .map(|(speed, report)| {
+                let mut row = serde_json::to_value(report)?;
+                row["asked_speed"] = serde_json::json!((f64::from(*speed) * 10.0).round() / 10.0);
+                Ok(row)
+            })
+            .collect();
+        object["baseline"] = rows?.into();
+    }
+    println!("{object}");
+    Ok(())
+}
+
+fn print_table(trained: &Report, baseline: &[(f32, Report)]) {
+    let headers = [
+        "controller",
+        "success %",
+        "time s",
+        "p95 s",
+        "path ratio",
+        "speed m/s",
+        "turn delay s",
+    ];
+    let row = |name: String, report: &Report| {
+        vec![
+            name,
+            format!("{:.1}", 100.0 * report.success),
+            format!("{:.2}", report.time_to_target_mean_s),
+            format!("{:.2}", report.time_to_target_p95_s),
+            format!("{:.2}", report.path_ratio),
+            format!("{:.2}", report.mean_speed),
+            format!("{:.2}", report.turn_delay_mean_s),
+        ]
+    };
+    let mut rows = vec![row("policy".into(), trained)];
+    rows.extend(
+        baseline
+            .iter()
+            .map(|(speed, report)| row(format!("straight at {speed} m/s"), report)),
+    );
+    print!("{}", table(&headers, &rows));
+}

@@ -1,0 +1,51 @@
+//! One file a subcommand.
+
+mod data;
+mod eval;
+mod train;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+use footwork::train::config::ConfigError;
+
+/// Trains character controllers: motion capture in, a policy that moves a full-body character out.
+#[derive(Parser)]
+#[command(name = "footwork", version, about, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Train a policy
+    #[command(subcommand)]
+    Train(train::Task),
+    /// Judge a trained policy on a fixed set of episodes
+    Eval(eval::Eval),
+    /// Import, synthesise and inspect motion
+    #[command(subcommand)]
+    Data(data::Data),
+}
+
+/// Something the user asked for that cannot be meant.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Usage(pub String);
+
+pub fn run() -> Result<()> {
+    match Cli::parse().command {
+        Command::Train(task) => task.run(),
+        Command::Eval(eval) => eval.run(),
+        Command::Data(data) => data.run(),
+    }
+}
+
+/// 2 for mistakes of usage, 1 for everything else.
+pub fn exit_code(error: &anyhow::Error) -> u8 {
+    if error.is::<Usage>() || error.is::<ConfigError>() {
+        2
+    } else {
+        1
+    }
+}

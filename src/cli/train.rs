@@ -1,0 +1,182 @@
+//! `footwork train`.
+
+use super::Usage;
+use anyhow::Result;
+use clap::{Args, Subcommand};
+use footwork::gpu::{Choice, Device};
+use footwork::motion::database::Database;
+use footwork::train::checkpoint::Checkpoint;
+use footwork::train::config::{Config, Preset};
+use footwork::train::data;
+use footwork::train::folder::Folder;
+use footwork::train::trainer::{TASK, train};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+#[derive(Subcommand)]
+pub enum Task {
+    /// Reach a target on an empty plane
+    Plane(Plane),
+}
+
+#[derive(Args)]
+pub struct Plane {
+    /// A folder of BVH files, one BVH file, or a database file [default: synthetic motion]
+    #[arg(long, value_name = "DIR|FILE")]
+    data: Option<PathBuf>,
+    /// Where to run: a real GPU if there is one, else the CPU [default: auto]
+    #[arg(long, value_enum)]
+    device: Option<Choice>,
+    /// Environments stepped together
+    #[arg(long, value_name = "N")]
+    envs: Option<usize>,
+    /// Stop after this many environment steps [default: 1000000]
+    #[arg(long, value_name = "N")]
+    steps: Option<u64>,
+    /// Stop after this time, like 90s, 5m or 1h30m
+    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
+    max_time: Option<std::time::Duration>,
+    /// Stop at this share of successful evaluation episodes, like 0.99
+    #[arg(long, value_name = "SHARE")]
+    stop_success: Option<f64>,
+    /// The same seed on the same device gives the same result [default: 1]
+    #[arg(long, value_name = "S")]
+    seed: Option<u32>,
+    /// `fast` as measured here, or `paper` with the paper's settings [default: fast]
+    #[arg(long, value_enum)]
+    preset: Option<Preset>,
+    /// A TOML file that changes keys of the preset: see any run's config.toml
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// The run's folder [default: runs/plane-N]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Go on with a run as if it had never stopped
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["data", "device", "envs", "seed", "preset", "config", "out"])]
+    resume: Option<PathBuf>,
+}
+
+impl Task {
+    pub fn run(self) -> Result<()> {
+        match self {
+            Task::Plane(plane) => plane.run(),
+        }
+    }
+}
+
+impl Plane {
+    fn run(self) -> Result<()> {
+        let interrupted = on_interrupt()?;
+        let resumed = self.resume.as_deref().map(Folder::open).transpose()?;
+        let config = match &resumed {
+            Some(folder) => self.limits(folder.read_config()?),
+            None => self.fresh()?,
+        };
+        config.check()?;
+        let device = Device::open(config.device)?;
+        let (database, notes) = data::load(config.data.as_deref(), config.weights)?;
+        for note in notes {
+            eprintln!("note: {note}");
+        }
+        let checkpoint = match &resumed {
+            Some(folder) => Some(Checkpoint::load_for(
+                &folder.checkpoint("last"),
+                database.fingerprint,
+            )?),
+            None => None,
+        };
+        let folder = match resumed {
+            Some(folder) => folder,
+            None => Folder::create(self.out.as_deref(), TASK)?,
+        };
+        folder.write_config(&config)?;
+        introduce(&config, &folder, &database, &device);
+        let summary = train(
+            &config,
+            &folder,
+            &Arc::new(database),
+            &device,
+            checkpoint,
+            interrupted,
+        )?;
+        println!(
+            "{} steps in {:.1} s ({:.0} steps/s), stopped by {}: {:.1} % of 1000 episodes reach the target, in {:.2} s on average",
+            summary.steps,
+            summary.wall_s,
+            summary.steps_per_s,
+            summary.stopped_by,
+            100.0 * summary.success,
+            summary.time_to_target_mean_s,
+        );
+        println!(
+            "see {0}/learning_curve.png, judge with `footwork eval {0}`",
+            folder.path().display()
+        );
+        if summary.stopped_by == "interrupt" {
+            println!(
+                "go on with `footwork train plane --resume {}`",
+                folder.path().display()
+            );
+        }
+        Ok(())
+    }
+
+    /// Preset, changed by the file, changed by the options.
+    fn fresh(&self) -> Result<Config> {
+        let preset = self.preset.unwrap_or_default();
+        let mut config = match &self.config {
+            Some(path) => Config::from_file(path, preset)?,
+            None => Config::preset(preset),
+        };
+        if self.preset.is_some_and(|asked| asked != config.preset) {
+            return Err(Usage(format!(
+                "--preset {preset:?} and the configuration's preset {:?} differ: drop one",
+                config.preset
+            ))
+            .into());
+        }
+        config.device = self.device.unwrap_or(config.device);
+        config.seed = self.seed.unwrap_or(config.seed);
+        config.ppo.envs = self.envs.unwrap_or(config.ppo.envs);
+        if let Some(data) = self.data.clone().or(config.data.take()) {
+            // A run must find its data again from any folder.
+            config.data = Some(std::path::absolute(&data).unwrap_or(data));
+        }
+        Ok(self.limits(config))
+    }
+
+    /// What a resumed run may change: when to stop.
+    fn limits(&self, mut config: Config) -> Config {
+        config.steps = self.steps.unwrap_or(config.steps);
+        config.max_time_s = self
+            .max_time
+            .map(|time| time.as_secs_f64())
+            .or(config.max_time_s);
+        config.stop_success = self.stop_success.or(config.stop_success);
+        config
+    }
+}
+
+fn introduce(config: &Config, folder: &Folder, database: &Database, device: &Device) {
+    eprintln!(
+        "training `{TASK}` on {}: {} environments, {:.1} minutes of motion, {} candidates; run folder {}",
+        device.name(),
+        config.ppo.envs,
+        database.minutes(),
+        database.candidates.len(),
+        folder.path().display(),
+    );
+}
+
+/// The first Ctrl-C asks the run to save and stop, the second ends the program.
+fn on_interrupt() -> Result<&'static AtomicBool> {
+    static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+    ctrlc::set_handler(|| {
+        if INTERRUPTED.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        eprintln!("\nstopping after this update; Ctrl-C again to stop at once");
+    })?;
+    Ok(&INTERRUPTED)
+}

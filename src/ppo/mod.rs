@@ -1,0 +1,59 @@
+//! Proximal policy optimisation (Schulman et al. 2017) in burn's tensors: the same code on the
+//! GPU and on the CPU.
+//!
+//! [`policy`] holds the networks, [`rollout`] lets them act, [`update`] improves them with
+//! [`adam`], [`scale`] keeps the critic's targets near one.
+
+pub mod adam;
+pub mod policy;
+pub mod rollout;
+pub mod scale;
+pub mod update;
+
+use serde::{Deserialize, Serialize};
+
+/// Everything that may be chosen about learning. Rewards and returns are in the task's units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ppo {
+    /// Environments stepped together.
+    pub envs: usize,
+    /// Steps of every environment between two updates.
+    pub horizon: usize,
+    /// Passes over a rollout.
+    pub epochs: usize,
+    /// Samples a gradient step.
+    pub minibatch: usize,
+    pub learning_rate: f64,
+    /// The learning rate falls linearly to this share of itself over `anneal_steps`.
+    pub final_rate: f64,
+    /// Environment steps of the fall; 0 for none.
+    pub anneal_steps: u64,
+    /// After each update the learning rate is divided by 1.5 if the mean KL divergence was over
+    /// twice this, multiplied by 1.5 if under half of it. 0 leaves it alone.
+    pub target_kl: f64,
+    pub gamma: f32,
+    pub lambda: f32,
+    /// Clip range of the probability ratio.
+    pub clip: f64,
+    /// Largest change of the critic's normalised output that is rewarded; 0 for no limit.
+    pub value_clip: f64,
+    pub value_coefficient: f64,
+    pub entropy_coefficient: f64,
+    /// Weight of a penalty on the KL divergence, adapted towards `kl_target`; 0 for none.
+    pub kl_coefficient: f64,
+    pub kl_target: f64,
+    /// Largest norm of the whole gradient; 0 for no limit.
+    pub max_gradient: f64,
+    /// Starting standard deviation of the actions, in normalised units, as a natural logarithm.
+    pub log_std: f32,
+    /// Widths of the hidden layers of policy and critic alike.
+    pub hidden: Vec<usize>,
+}
+
+impl Ppo {
+    /// Samples of one update.
+    pub fn batch(&self) -> usize {
+        self.envs * self.horizon
+    }
+}

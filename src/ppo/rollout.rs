@@ -1,0 +1,90 @@
+//! Lets the policy act for a while and remembers what learning needs.
+
+use super::Ppo;
+use super::policy::Policy;
+use super::scale::Scale;
+use crate::gpu::Device;
+use crate::world::{Values, World};
+use anyhow::Result;
+use burn::tensor::Tensor;
+use std::time::Instant;
+
+/// One rollout, `[horizon * envs]` rows, time-major.
+pub struct Rollout {
+    pub observation: Tensor<2>,
+    pub action: Tensor<2>,
+    /// The policy's mean when it acted.
+    pub mean: Tensor<2>,
+    pub log_prob: Tensor<1>,
+    /// The critic's normalised value.
+    pub value: Tensor<1>,
+    /// In units of reward.
+    pub advantage: Tensor<1>,
+    pub target: Tensor<1>,
+    /// Logarithm of the standard deviation the actions were drawn with.
+    pub log_std: Tensor<1>,
+    /// Share of the time spent in the networks, not in the worlds.
+    pub acting_share: f64,
+}
+
+/// Steps all worlds `horizon` times.
+///
+/// # Errors
+/// The device was lost.
+pub fn collect(
+    world: &mut dyn World,
+    policy: &Policy,
+    scale: &Scale,
+    config: &Ppo,
+    device: &Device,
+) -> Result<Rollout> {
+    let (mut observations, mut actions, mut means, mut log_probs) =
+        (vec![], vec![], vec![], vec![]);
+    let mut acting_share = 0.0;
+    for step in 0..config.horizon {
+        // A GPU only queues what it is asked for; the first step of a rollout waits for it, to
+        // see where the time goes.
+        let clock = || -> Result<Instant> {
+            if step == 0 {
+                device.sync()?;
+            }
+            Ok(Instant::now())
+        };
+        let start = clock()?;
+        let observation = world.observe();
+        let seen = clock()?;
+        let mean = policy.mean(observation.clone());
+        let (action, log_prob) = world.act(mean.clone(), policy.log_std.clone());
+        let acted = clock()?;
+        world.step(action.clone());
+        if step == 0 {
+            let total = (clock()? - start).as_secs_f64();
+            acting_share = (acted - seen).as_secs_f64() / total.max(1e-9);
+        }
+        observations.push(observation);
+        actions.push(action);
+        means.push(mean);
+        log_probs.push(log_prob);
+    }
+    let observation = Tensor::cat(observations, 0);
+    // The critic does not act: one large batch is quicker than many small ones.
+    let value = policy.value(observation.clone());
+    let values = Values {
+        observed: value.clone(),
+        next: policy.value(world.observe()),
+        last: policy.value(world.truncated()),
+        scale: scale.mean_and_deviation(),
+    };
+    let (advantage, target) = world.judge(values, config.gamma, config.lambda);
+    Ok(Rollout {
+        observation,
+        action: Tensor::cat(actions, 0),
+        mean: Tensor::cat(means, 0),
+        log_prob: Tensor::cat(log_probs, 0),
+        value,
+        advantage,
+        target,
+        log_std: policy.log_std.clone(),
+        acting_share,
+    })
+}

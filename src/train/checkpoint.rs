@@ -1,0 +1,179 @@
+//! A run at one moment, complete: it goes on from here as if it had never stopped.
+
+use crate::kernels::layout::{OBSERVATION, real, whole};
+use crate::ppo::Ppo;
+use crate::ppo::adam::Adam;
+use crate::ppo::policy::Shape;
+use crate::ppo::scale::Scale;
+use crate::ppo::update::Learner;
+use crate::store::{Arrays, Format, StoreError};
+use crate::tensors::{read, vector};
+use crate::world::{Plane, Snapshot};
+use burn::tensor::Device;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+const FORMAT: Format = Format {
+    kind: "checkpt",
+    version: 1,
+};
+
+/// What a policy was trained for, and how far the run had come.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    pub task: String,
+    pub observation: usize,
+    /// Of the database: a policy is of no use with another.
+    pub database: u32,
+    pub hidden: Vec<usize>,
+    pub plane: Plane,
+    pub seed: u32,
+    pub steps: u64,
+    pub wall_s: f64,
+    pub updates: u64,
+    pub learning_rate: f64,
+    pub kl_coefficient: f64,
+    pub adam_steps: u64,
+    pub scale_updates: u64,
+    pub world: Snapshot,
+    /// What the trainer remembers besides: see [`super::trainer`].
+    pub memory: super::trainer::Memory,
+}
+
+/// Header and arrays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint {
+    pub header: Header,
+    pub parameters: Vec<f32>,
+    pub first_moment: Vec<f32>,
+    pub second_moment: Vec<f32>,
+    pub value_moments: Vec<f32>,
+}
+
+/// Why a checkpoint does not fit.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    #[error(
+        "{path} was trained with another database (fingerprint {found:08x}, this one has {wanted:08x}): give the data of its config.toml"
+    )]
+    Database {
+        path: PathBuf,
+        found: u32,
+        wanted: u32,
+    },
+    #[error(
+        "{path} is of the task `{found}` with {found_width} observations, not `{wanted}` with {wanted_width}"
+    )]
+    Task {
+        path: PathBuf,
+        found: String,
+        found_width: usize,
+        wanted: &'static str,
+        wanted_width: usize,
+    },
+}
+
+impl Checkpoint {
+    /// Copies a run's state to the host.
+    ///
+    /// # Errors
+    /// The device failed.
+    pub fn take(header: Header, learner: &Learner) -> anyhow::Result<Self> {
+        Ok(Checkpoint {
+            header,
+            parameters: read(learner.parameters.clone())?,
+            first_moment: read(learner.adam.first.clone())?,
+            second_moment: read(learner.adam.second.clone())?,
+            value_moments: read(learner.scale.moments.clone())?,
+        })
+    }
+
+    /// Puts the state into a fresh learner of the same configuration.
+    pub fn learner(&self, config: &Ppo, device: &Device) -> Learner {
+        let mut learner = Learner::new(config, device, self.header.seed);
+        learner.parameters = vector(&self.parameters, device);
+        learner.adam = Adam {
+            first: vector(&self.first_moment, device),
+            second: vector(&self.second_moment, device),
+            steps: self.header.adam_steps,
+        };
+        learner.scale = Scale {
+            moments: vector(&self.value_moments, device),
+            updates: self.header.scale_updates,
+        };
+        learner.learning_rate = self.header.learning_rate;
+        learner.kl_coefficient = self.header.kl_coefficient;
+        learner.updates = self.header.updates;
+        learner
+    }
+
+    pub fn save(&self, path: &Path) -> Result<(), StoreError> {
+        let mut arrays = Arrays::default();
+        arrays.put("parameters", &self.parameters);
+        arrays.put("first_moment", &self.first_moment);
+        arrays.put("second_moment", &self.second_moment);
+        arrays.put("value_moments", &self.value_moments);
+        arrays.put("real", &self.header.world.real);
+        arrays.put("whole", &self.header.world.whole);
+        crate::store::save(path, FORMAT, &self.header, &arrays)
+    }
+
+    pub fn load(path: &Path) -> Result<Self, StoreError> {
+        let (mut header, mut arrays) = crate::store::load::<Header>(path, FORMAT)?;
+        let damaged = |why: &str| StoreError::Damaged {
+            path: path.to_path_buf(),
+            why: why.to_string(),
+        };
+        let mut floats = |name: &str| {
+            arrays
+                .take::<f32>(name)
+                .ok_or_else(|| damaged(&format!("no {name}")))
+        };
+        let parameters = floats("parameters")?;
+        let (first_moment, second_moment) = (floats("first_moment")?, floats("second_moment")?);
+        let value_moments = floats("value_moments")?;
+        header.world.real = floats("real")?;
+        header.world.whole = arrays.take("whole").ok_or_else(|| damaged("no whole"))?;
+        let expected = Shape::new(&header.hidden).parameters();
+        let envs = header.world.whole.len() / whole::FIELDS;
+        let fits = [parameters.len(), first_moment.len(), second_moment.len()] == [expected; 3]
+            && value_moments.len() == 2
+            && header.world.real.len() == envs * real::FIELDS
+            && header.world.whole.len() == envs * whole::FIELDS;
+        if !fits {
+            return Err(damaged("its arrays do not fit together"));
+        }
+        Ok(Checkpoint {
+            header,
+            parameters,
+            first_moment,
+            second_moment,
+            value_moments,
+        })
+    }
+
+    /// Loads a checkpoint of the plane task for a database.
+    pub fn load_for(path: &Path, database: u32) -> Result<Self, CheckpointError> {
+        let checkpoint = Self::load(path)?;
+        let header = &checkpoint.header;
+        if header.task != super::trainer::TASK || header.observation != OBSERVATION {
+            return Err(CheckpointError::Task {
+                path: path.to_path_buf(),
+                found: header.task.clone(),
+                found_width: header.observation,
+                wanted: super::trainer::TASK,
+                wanted_width: OBSERVATION,
+            });
+        }
+        if header.database != database {
+            return Err(CheckpointError::Database {
+                path: path.to_path_buf(),
+                found: header.database,
+                wanted: database,
+            });
+        }
+        Ok(checkpoint)
+    }
+}

@@ -1,0 +1,118 @@
+//! A run's folder and the files in it.
+
+use super::config::Config;
+use anyhow::{Context, Result, bail};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// How a training ended, written as `summary.json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Environment steps, over all resumptions.
+    pub steps: u64,
+    /// Seconds of training, over all resumptions.
+    pub wall_s: f64,
+    pub steps_per_s: f64,
+    /// Over the evaluation episodes, at the end.
+    pub success: f64,
+    pub time_to_target_mean_s: f64,
+    pub device: String,
+    pub seed: u32,
+    /// `steps`, `time`, `success`, `interrupt` or `failure`.
+    pub stopped_by: &'static str,
+}
+
+/// A run's folder: `config.toml`, `metrics.jsonl`, TensorBoard events, `checkpoints/`, pictures,
+/// `summary.json`.
+#[derive(Clone, Debug)]
+pub struct Folder(PathBuf);
+
+impl Folder {
+    /// Makes the folder of a new run: the given one, or the next free `runs/TASK-N`.
+    pub fn create(given: Option<&Path>, task: &str) -> Result<Self> {
+        let path = match given {
+            Some(path) => path.to_path_buf(),
+            None => {
+                let free = (1..)
+                    .map(|n| Path::new("runs").join(format!("{task}-{n}")))
+                    .find(|p| !p.exists());
+                free.context("no free name under runs/")?
+            }
+        };
+        if path.join("config.toml").exists() {
+            bail!(
+                "{} already holds a run: go on with `--resume {0}`, or choose another --out",
+                path.display()
+            );
+        }
+        let folder = Folder(path);
+        let checkpoints = folder.checkpoints();
+        std::fs::create_dir_all(&checkpoints)
+            .with_context(|| format!("cannot make the run folder {}", folder.0.display()))?;
+        Ok(folder)
+    }
+
+    /// An existing run.
+    pub fn open(path: &Path) -> Result<Self> {
+        if !path.is_dir() {
+            bail!(
+                "{} is not a run folder: give one that `footwork train` has made",
+                path.display()
+            );
+        }
+        let folder = Folder(path.to_path_buf());
+        if !folder.config_path().exists() {
+            bail!(
+                "{} holds no run: its config.toml is missing",
+                path.display()
+            );
+        }
+        Ok(folder)
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn config_path(&self) -> PathBuf {
+        self.file("config.toml")
+    }
+
+    fn checkpoints(&self) -> PathBuf {
+        self.file("checkpoints")
+    }
+
+    /// `last`, `best` or `steps-N`.
+    pub fn checkpoint(&self, name: &str) -> PathBuf {
+        self.checkpoints().join(format!("{name}.ckpt"))
+    }
+
+    /// The periodic checkpoint at a number of steps; the names sort like the numbers.
+    pub fn checkpoint_at(&self, steps: u64) -> PathBuf {
+        self.checkpoint(&format!("steps-{steps:010}"))
+    }
+
+    pub fn write_config(&self, config: &Config) -> Result<()> {
+        let text = toml::to_string(config).context("the configuration has no TOML form")?;
+        Ok(crate::store::write_whole(
+            &self.config_path(),
+            text.as_bytes(),
+        )?)
+    }
+
+    pub fn read_config(&self) -> Result<Config> {
+        Ok(Config::from_file(&self.config_path(), Default::default())?)
+    }
+
+    pub fn write_summary(&self, summary: &Summary) -> Result<()> {
+        let text = serde_json::to_string_pretty(summary)? + "\n";
+        Ok(crate::store::write_whole(
+            &self.file("summary.json"),
+            text.as_bytes(),
+        )?)
+    }
+}

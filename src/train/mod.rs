@@ -1,0 +1,11 @@
+//! A training run: what was asked for, the loop, what it leaves behind.
+
+pub mod checkpoint;
+pub mod config;
+pub mod data;
+pub mod evaluate;
+pub mod folder;
+pub mod milestones;
+pub mod progress;
+pub mod record;
+pub mod trainer;

@@ -1,0 +1,92 @@
+//! A live line on a terminal, a plain line now and then otherwise.
+
+use super::record::Row;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+/// Between two plain lines.
+const PLAIN: Duration = Duration::from_secs(5);
+
+pub struct Progress {
+    bar: Option<ProgressBar>,
+    spoken: Option<Instant>,
+    steps: u64,
+    max_time_s: Option<f64>,
+}
+
+impl Progress {
+    /// For a run that ends at `steps`, or sooner after `max_time_s` seconds.
+    pub fn new(steps: u64, max_time_s: Option<f64>) -> Self {
+        let bar = std::io::stderr().is_terminal().then(|| {
+            let bar = ProgressBar::new(steps);
+            if let Ok(style) = ProgressStyle::with_template("{bar:24} {msg}") {
+                bar.set_style(style);
+            }
+            bar
+        });
+        Progress {
+            bar,
+            spoken: None,
+            steps,
+            max_time_s,
+        }
+    }
+
+    /// `success` and `episode_return` are means over recent episodes.
+    pub fn show(&mut self, row: &Row, success: f64, episode_return: f64) {
+        let rate = row.steps as f64 / row.wall_s.max(1e-9);
+        let by_steps = self.steps.saturating_sub(row.steps) as f64 / rate.max(1e-9);
+        let left = self
+            .max_time_s
+            .map_or(by_steps, |max| by_steps.min(max - row.wall_s))
+            .max(0.0);
+        let line = format!(
+            "{:>9} steps  success {:>5.1} %  return {:>7.1}  {:>7.0} steps/s  {} gone, at most {} left",
+            row.steps,
+            100.0 * success,
+            episode_return,
+            row.steps_per_s,
+            clock(row.wall_s),
+            clock(left),
+        );
+        match &self.bar {
+            Some(bar) => {
+                bar.set_position(row.steps.min(self.steps));
+                bar.set_message(line);
+            }
+            None if self.spoken.is_none_or(|at| at.elapsed() >= PLAIN) => {
+                self.spoken = Some(Instant::now());
+                eprintln!("{line}");
+            }
+            None => {}
+        }
+    }
+
+    /// Prints above the live line.
+    pub fn say(&self, line: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| eprintln!("{line}")),
+            None => eprintln!("{line}"),
+        }
+    }
+
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.abandon();
+        }
+    }
+}
+
+fn clock(seconds: f64) -> String {
+    let seconds = seconds.round() as u64;
+    match seconds {
+        0..3600 => format!("{}:{:02}", seconds / 60, seconds % 60),
+        _ => format!(
+            "{}:{:02}:{:02}",
+            seconds / 3600,
+            seconds / 60 % 60,
+            seconds % 60
+        ),
+    }
+}

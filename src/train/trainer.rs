@@ -1,0 +1,378 @@
+//! The training loop: act, learn, write down, look whether to stop.
+
+use super::checkpoint::{Checkpoint, Header};
+use super::config::Config;
+use super::evaluate::{Report, Trained, evaluate};
+use super::folder::{Folder, Summary};
+use super::milestones;
+use super::progress::Progress;
+use super::record::{self, Recorder, Row};
+use crate::gpu::Device;
+use crate::kernels::layout::OBSERVATION;
+use crate::motion::database::Database;
+use crate::ppo::rollout::{self, Rollout};
+use crate::ppo::update::{Learner, Losses};
+use crate::tensors;
+use crate::world::{self, Tally, World};
+use anyhow::{Context, Result, bail};
+use burn::tensor::Tensor;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+pub const TASK: &str = "plane";
+/// Episodes of an evaluation.
+pub const EPISODES: usize = 1000;
+/// Fewer, to see whether all of them are worth running.
+const GLANCE: usize = 100;
+/// Training success this far below the goal is worth a glance.
+const NEAR: f64 = 0.15;
+/// Recent success and return are means over at least so many episodes.
+const RECENT: f32 = 500.0;
+
+/// What the trainer remembers from update to update; part of a checkpoint.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Memory {
+    /// Tallies of the latest updates: episodes, successes, steps, returns.
+    recent: Vec<[f32; 4]>,
+    /// Recent success and (negative) length of the best policy so far.
+    best: Option<(f64, f64)>,
+}
+
+impl Memory {
+    fn remember(&mut self, tally: Tally) {
+        self.recent
+            .push([tally.episodes, tally.successes, tally.steps, tally.returns]);
+        let episodes = |recent: &[[f32; 4]]| recent.iter().map(|t| t[0]).sum::<f32>();
+        while self.recent.len() > 1 && episodes(&self.recent[1..]) >= RECENT {
+            self.recent.remove(0);
+        }
+    }
+
+    /// Means over the recent episodes: success, steps, return. `None` before the first ended.
+    fn means(&self) -> Option<[f64; 3]> {
+        let sum = |i: usize| self.recent.iter().map(|t| f64::from(t[i])).sum::<f64>();
+        (sum(0) > 0.0).then(|| [1, 2, 3].map(|i| sum(i) / sum(0)))
+    }
+
+    /// Whether the recent episodes are the best so far: more success, then shorter.
+    fn improved(&mut self) -> bool {
+        let Some([success, length, _]) = self.means() else {
+            return false;
+        };
+        // Whole percents, so that noise in the success does not hide that the walks get shorter.
+        let score = ((success * 100.0).floor(), -length);
+        let better = self.best.is_none_or(|best| score > best);
+        if better {
+            self.best = Some(score);
+        }
+        better
+    }
+}
+
+/// A run under way.
+struct Run<'a> {
+    config: &'a Config,
+    folder: &'a Folder,
+    database: &'a Arc<Database>,
+    device: &'a Device,
+    world: Box<dyn World>,
+    learner: Learner,
+    memory: Memory,
+    rows: Vec<Row>,
+    recorder: Recorder,
+    progress: Progress,
+    steps: u64,
+    /// Seconds before this process, and its start.
+    earlier_s: f64,
+    start: Instant,
+}
+
+/// Trains until a limit, the wished-for success or `interrupted`; with `from`, goes on where that
+/// checkpoint was taken. Ends by writing checkpoint, pictures and `summary.json`.
+///
+/// # Errors
+/// A file cannot be written, the device is lost, or the losses are no longer finite. The last
+/// good checkpoint and everything before it stay as they are.
+pub fn train(
+    config: &Config,
+    folder: &Folder,
+    database: &Arc<Database>,
+    device: &Device,
+    from: Option<Checkpoint>,
+    interrupted: &AtomicBool,
+) -> Result<Summary> {
+    let mut run = Run::open(config, folder, database, device, from)?;
+    let stopped_by = run.advance(interrupted);
+    let outcome = stopped_by.and_then(|by| {
+        run.save(&folder.checkpoint("last"))?;
+        Ok(by)
+    });
+    run.progress.finish();
+    run.conclude(outcome)
+}
+
+impl<'a> Run<'a> {
+    fn open(
+        config: &'a Config,
+        folder: &'a Folder,
+        database: &'a Arc<Database>,
+        device: &'a Device,
+        from: Option<Checkpoint>,
+    ) -> Result<Self> {
+        let ppo = &config.ppo;
+        let mut world = world::open(
+            device,
+            database,
+            config.plane,
+            ppo.envs,
+            ppo.horizon,
+            config.seed,
+        );
+        let (mut steps, mut earlier_s, mut memory) = (0, 0.0, Memory::default());
+        let learner = match from {
+            None => Learner::new(ppo, &device.tensors(), config.seed),
+            Some(checkpoint) => {
+                world.restore(&checkpoint.header.world);
+                (steps, earlier_s) = (checkpoint.header.steps, checkpoint.header.wall_s);
+                memory = checkpoint.header.memory.clone();
+                checkpoint.learner(ppo, &device.tensors())
+            }
+        };
+        let rows = if steps > 0 {
+            record::read(&folder.file("metrics.jsonl"), steps)?
+        } else {
+            Vec::new()
+        };
+        Ok(Run {
+            config,
+            folder,
+            database,
+            device,
+            world,
+            learner,
+            memory,
+            recorder: Recorder::open(folder.path(), &rows)?,
+            rows,
+            progress: Progress::new(config.steps, config.max_time_s),
+            steps,
+            earlier_s,
+            start: Instant::now(),
+        })
+    }
+
+    fn wall_s(&self) -> f64 {
+        self.earlier_s + self.start.elapsed().as_secs_f64()
+    }
+
+    /// Updates until there is a reason to stop.
+    fn advance(&mut self, interrupted: &AtomicBool) -> Result<&'static str> {
+        loop {
+            if self.steps >= self.config.steps {
+                return Ok("steps");
+            }
+            if self
+                .config
+                .max_time_s
+                .is_some_and(|max| self.wall_s() >= max)
+            {
+                return Ok("time");
+            }
+            if interrupted.load(Ordering::Relaxed) {
+                return Ok("interrupt");
+            }
+            let before = self.steps;
+            let mut row = self.update()?;
+            let reached =
+                self.crossed(self.config.evaluate_every, before) && self.arrived(&mut row)?;
+            self.write_down(row)?;
+            self.keep(before)?;
+            if reached {
+                return Ok("success");
+            }
+        }
+    }
+
+    /// Whether this update passed a multiple of `every` steps.
+    fn crossed(&self, every: u64, before: u64) -> bool {
+        before / every != self.steps / every
+    }
+
+    fn update(&mut self) -> Result<Row> {
+        let ppo = &self.config.ppo;
+        let start = Instant::now();
+        let policy = self.learner.policy();
+        let rollout = rollout::collect(
+            &mut *self.world,
+            &policy,
+            &self.learner.scale,
+            ppo,
+            self.device,
+        )?;
+        let collected = start.elapsed().as_secs_f64();
+        let losses = self.learner.update(&rollout, ppo);
+        // The one read-back of an update.
+        let numbers = tensors::read(Tensor::cat(vec![losses, self.world.tally()], 0))?;
+        self.steps += ppo.batch() as u64;
+        if let Some(place) = numbers.iter().position(|number| !number.is_finite()) {
+            bail!(
+                "learning diverged: number {place} of update {} is {}; the last checkpoint is from before this. \
+                 Try a lower ppo.learning_rate",
+                self.learner.updates,
+                numbers[place]
+            );
+        }
+        let losses = Losses::from(&numbers);
+        let tally = Tally {
+            episodes: numbers[6],
+            successes: numbers[7],
+            steps: numbers[8],
+            returns: numbers[9],
+        };
+        self.memory.remember(tally);
+        let row = self.row(
+            losses,
+            tally,
+            &rollout,
+            collected,
+            start.elapsed().as_secs_f64(),
+        );
+        self.learner.adapt(losses.kl, self.steps, ppo);
+        Ok(row)
+    }
+
+    fn row(
+        &self,
+        losses: Losses,
+        tally: Tally,
+        rollout: &Rollout,
+        collected: f64,
+        total: f64,
+    ) -> Row {
+        let per_episode =
+            |sum: f32| (tally.episodes > 0.0).then(|| f64::from(sum / tally.episodes));
+        Row {
+            update: self.learner.updates,
+            steps: self.steps,
+            wall_s: self.wall_s(),
+            episodes: tally.episodes.into(),
+            success: per_episode(tally.successes),
+            episode_return: per_episode(tally.returns),
+            episode_length: per_episode(tally.steps),
+            policy_loss: losses.policy,
+            value_loss: losses.value,
+            entropy: losses.entropy,
+            kl: losses.kl,
+            clip_fraction: losses.clip_fraction,
+            explained_variance: losses.explained_variance,
+            learning_rate: self.learner.learning_rate,
+            steps_per_s: self.config.ppo.batch() as f64 / total,
+            simulate_s: collected * (1.0 - rollout.acting_share),
+            act_s: collected * rollout.acting_share,
+            learn_s: total - collected,
+            evaluated_success: None,
+            evaluated_time_s: None,
+        }
+    }
+
+    /// Whether the wished-for success is reached: judged on the fixed evaluation episodes, which
+    /// are only run when training looks near it, first a few, then all.
+    fn arrived(&self, row: &mut Row) -> Result<bool> {
+        let (Some(goal), Some([recent, ..])) = (self.config.stop_success, self.memory.means())
+        else {
+            return Ok(false);
+        };
+        if recent < goal - NEAR || self.judge(GLANCE)?.success < goal {
+            return Ok(false);
+        }
+        let report = self.judge(EPISODES)?;
+        row.evaluated_success = Some(report.success);
+        row.evaluated_time_s = Some(report.time_to_target_mean_s);
+        Ok(report.success >= goal)
+    }
+
+    fn judge(&self, episodes: usize) -> Result<Report> {
+        let parameters = tensors::read(self.learner.parameters.clone())?;
+        let policy = Trained::new(&self.config.ppo.hidden, &parameters);
+        evaluate(&policy, self.database, self.config.plane, episodes)
+    }
+
+    fn write_down(&mut self, row: Row) -> Result<()> {
+        self.recorder.write(&row)?;
+        let [success, _, episode_return] = self.memory.means().unwrap_or_default();
+        self.progress.show(&row, success, episode_return);
+        self.rows.push(row);
+        Ok(())
+    }
+
+    /// Saves what this update has earned: periodic, milestone and best checkpoints.
+    fn keep(&mut self, before: u64) -> Result<()> {
+        if let Some(steps) = milestones::crossed(before, self.steps) {
+            self.save(&self.folder.checkpoint_at(steps))?;
+        }
+        if self.crossed(self.config.checkpoint_every, before) {
+            let every = self.config.checkpoint_every;
+            self.save(&self.folder.checkpoint_at(self.steps / every * every))?;
+            self.save(&self.folder.checkpoint("last"))?;
+        }
+        // The best is looked for as often as success is, not at every update.
+        if self.crossed(self.config.evaluate_every, before) && self.memory.improved() {
+            self.save(&self.folder.checkpoint("best"))?;
+        }
+        Ok(())
+    }
+
+    fn save(&self, path: &std::path::Path) -> Result<()> {
+        let header = Header {
+            task: TASK.to_string(),
+            observation: OBSERVATION,
+            database: self.database.fingerprint,
+            hidden: self.config.ppo.hidden.clone(),
+            plane: self.config.plane,
+            seed: self.config.seed,
+            steps: self.steps,
+            wall_s: self.wall_s(),
+            updates: self.learner.updates,
+            learning_rate: self.learner.learning_rate,
+            kl_coefficient: self.learner.kl_coefficient,
+            adam_steps: self.learner.adam.steps,
+            scale_updates: self.learner.scale.updates,
+            world: self.world.snapshot()?,
+            memory: self.memory.clone(),
+        };
+        Ok(Checkpoint::take(header, &self.learner)?.save(path)?)
+    }
+
+    /// Final evaluation, pictures and summary. After a failure only the summary is written.
+    fn conclude(self, outcome: Result<&'static str>) -> Result<Summary> {
+        let wall_s = self.wall_s();
+        let mut summary = Summary {
+            steps: self.steps,
+            wall_s,
+            steps_per_s: self.steps as f64 / wall_s.max(1e-9),
+            success: 0.0,
+            time_to_target_mean_s: 0.0,
+            device: self.device.name(),
+            seed: self.config.seed,
+            stopped_by: "failure",
+        };
+        match outcome {
+            Ok(by) => {
+                let report = self.judge(EPISODES)?;
+                summary.stopped_by = by;
+                summary.success = report.success;
+                summary.time_to_target_mean_s = report.time_to_target_mean_s;
+                milestones::draw(self.folder, &self.rows, self.database, self.config.plane)?;
+                self.folder.write_summary(&summary)?;
+                Ok(summary)
+            }
+            Err(error) => {
+                self.folder
+                    .write_summary(&summary)
+                    .context(format!("{error:#}; then"))?;
+                Err(error)
+            }
+        }
+    }
+}
