@@ -5,7 +5,7 @@
 //! outer box. A box's distance to the query bounds its rows' distances from below, in floating
 //! point too: rounding is monotonic, and boxes and rows are summed in the same order. So
 //! pruning needs no tolerance and the answer is, bit for bit, the plain one of
-//! [`crate::kernels::search_wide::twin`], the lowest index of equals included.
+//! [`crate::kernels::search_exact::twin`], the lowest index of equals included.
 
 use crate::motion::database::PADDED;
 use crate::motion::features::FEATURE;
@@ -190,27 +190,44 @@ fn pack(corners: &[Corners]) -> Boxes {
 
 #[inline(always)]
 fn distances(rows: &Lanes, query: &[f32; PADDED]) -> [f32; LANES] {
-    let mut sum = [0.0; LANES];
-    for (lanes, &q) in rows.iter().zip(query) {
-        for (sum, &row) in sum.iter_mut().zip(lanes) {
-            let d = row - q;
-            *sum = d.mul_add(d, *sum);
+    interleaved(|d, sum| {
+        for (sum, &row) in sum.iter_mut().zip(&rows[d]) {
+            let difference = row - query[d];
+            *sum = difference.mul_add(difference, *sum);
         }
-    }
-    sum
+    })
 }
 
 #[inline(always)]
 fn bounds(boxes: &Boxes, query: &[f32; PADDED]) -> [f32; LANES] {
-    let mut sum = [0.0; LANES];
-    for ((low, high), &q) in boxes.low.iter().zip(&boxes.high).zip(query) {
-        for ((sum, &low), &high) in sum.iter_mut().zip(low).zip(high) {
-            let below = if low - q > 0.0 { low - q } else { 0.0 };
-            let d = if q - high > below { q - high } else { below };
-            *sum = d.mul_add(d, *sum);
+    interleaved(|d, sum| {
+        for ((sum, &low), &high) in sum.iter_mut().zip(&boxes.low[d]).zip(&boxes.high[d]) {
+            let (below, above) = (low - query[d], query[d] - high);
+            let outside = if below > above { below } else { above };
+            let outside = if outside > 0.0 { outside } else { 0.0 };
+            *sum = outside.mul_add(outside, *sum);
+        }
+    })
+}
+
+/// Adds up all dimensions in the four interleaved sums of
+/// [`squared`](crate::kernels::search_exact::squared).
+#[inline(always)]
+fn interleaved(add: impl Fn(usize, &mut [f32; LANES])) -> [f32; LANES] {
+    let (mut a, mut b, mut c, mut d) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    for quad in (0..FEATURE).step_by(4) {
+        add(quad, &mut a);
+        add(quad + 1, &mut b);
+        add(quad + 2, &mut c);
+        if quad + 3 < FEATURE {
+            add(quad + 3, &mut d);
         }
     }
-    sum
+    let mut joined = [0.0; LANES];
+    for (lane, joined) in joined.iter_mut().enumerate() {
+        *joined = (a[lane] + b[lane]) + (c[lane] + d[lane]);
+    }
+    joined
 }
 
 #[multiversion(targets(

@@ -1,122 +1,115 @@
-// Nearest candidate of every query within a chunk of the database, by comparing with every row.
-// The form for software adapters: queries across lanes, eight an invocation, and the database
-// row the same for all lanes. An invocation stays far below the 65,535 loop iterations after
-// which lavapipe silently stops looping. Pieces are joined by search_merge.
+// Scores every block of the database for every query: the largest of q.r - |r|^2 / 2 over the
+// block's rows, which is (|q|^2 - |q - r|^2) / 2. One multiply-add a dimension; search_exact then
+// looks closely at the few blocks that rounding leaves in question.
 //
-// rows       [candidates][QUADS] of vec4   normalised features, padded with zeros
-// queries    [count][QUADS] of vec4
-// distance   [chunks][count]   squared, of the best row of the chunk
-// index      [chunks][count]   that row, the lowest of equals
+// The form for software adapters: queries across lanes and 32 of them an invocation, because
+// lavapipe fetches a row lane by lane even where all lanes want the same one; so each fetch must
+// serve many queries. Measured there at 65k rows: 217 us a query with 8 queries an invocation,
+// 175 with 16, 84 with 32. An invocation stays far below the 65,535 loop iterations after which
+// lavapipe silently stops looping.
+//
+// rows     [candidates][QUADS] of vec4   normalised features; the last number is -|r|^2 / 2
+// queries  [count][QUADS] of vec4        the last number is 1
+// score    [blocks][count]
 
 #import layout
-#import distance
 
 struct Params {
     count: u32,
     candidates: u32,
-    chunk: u32,
+    block: u32,
+    // Blocks an invocation scores.
+    run: u32,
 }
 
 @group(0) @binding(0) var<storage, read> rows: array<vec4f>;
 @group(0) @binding(1) var<storage, read> queries: array<vec4f>;
-@group(0) @binding(2) var<storage, read_write> distance: array<f32>;
-@group(0) @binding(3) var<storage, read_write> index: array<u32>;
-@group(0) @binding(4) var<uniform> params: Params;
+@group(0) @binding(2) var<storage, read_write> score: array<f32>;
+@group(0) @binding(3) var<uniform> params: Params;
 
 const LANES = 8u;
-const QUERIES = 8u; // an invocation
+const QUERIES = 32u; // an invocation
+const LEAST = vec4f(-3.4e38);
 
-fn row(at: u32) -> Feature {
+struct Feature { a: vec4f, b: vec4f, c: vec4f, d: vec4f, e: vec4f, f: vec4f, g: vec4f }
+struct Four { a: Feature, b: Feature, c: Feature, d: Feature }
+
+fn dot28(p: Feature, q: Feature) -> f32 {
+    let sum = fma(p.g, q.g, fma(p.f, q.f, fma(p.e, q.e, fma(p.d, q.d, fma(p.c, q.c, fma(p.b, q.b, p.a * q.a))))));
+    return (sum.x + sum.y) + (sum.z + sum.w);
+}
+
+fn scores(row: Feature, q: Four) -> vec4f {
+    return vec4f(dot28(row, q.a), dot28(row, q.b), dot28(row, q.c), dot28(row, q.d));
+}
+
+fn load_row(at: u32) -> Feature {
     let i = at * QUADS;
     return Feature(rows[i], rows[i + 1u], rows[i + 2u], rows[i + 3u], rows[i + 4u], rows[i + 5u], rows[i + 6u]);
 }
 
 // Queries past the end repeat the last one and are not written.
-fn load(at: u32) -> Feature {
+fn load_query(at: u32) -> Feature {
     let i = min(at, params.count - 1u) * QUADS;
     return Feature(queries[i], queries[i + 1u], queries[i + 2u], queries[i + 3u], queries[i + 4u], queries[i + 5u], queries[i + 6u]);
 }
 
-fn write(chunk: u32, at: u32, best: f32, found: u32) {
-    if (at < params.count) {
-        distance[chunk * params.count + at] = best;
-        index[chunk * params.count + at] = found;
+fn load_four(at: u32) -> Four {
+    return Four(load_query(at), load_query(at + LANES), load_query(at + 2u * LANES), load_query(at + 3u * LANES));
+}
+
+fn write(block: u32, at: u32, best: vec4f) {
+    let row = block * params.count;
+    for (var i = 0u; i < 4u; i++) {
+        let query = at + i * LANES;
+        if (query < params.count) {
+            score[row + query] = best[i];
+        }
     }
 }
 
 @compute @workgroup_size(8)
 fn search_wide(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
     let first = group.x * LANES * QUERIES + local.x;
-    let begin = group.y * params.chunk;
-    let end = min(begin + params.chunk, params.candidates);
-    let q0 = load(first + 0u * LANES);
-    let q1 = load(first + 1u * LANES);
-    let q2 = load(first + 2u * LANES);
-    let q3 = load(first + 3u * LANES);
-    let q4 = load(first + 4u * LANES);
-    let q5 = load(first + 5u * LANES);
-    let q6 = load(first + 6u * LANES);
-    let q7 = load(first + 7u * LANES);
-    var best0 = 3.4e38;
-    var best1 = 3.4e38;
-    var best2 = 3.4e38;
-    var best3 = 3.4e38;
-    var best4 = 3.4e38;
-    var best5 = 3.4e38;
-    var best6 = 3.4e38;
-    var best7 = 3.4e38;
-    var found0 = begin;
-    var found1 = begin;
-    var found2 = begin;
-    var found3 = begin;
-    var found4 = begin;
-    var found5 = begin;
-    var found6 = begin;
-    var found7 = begin;
-    for (var at = begin; at < end; at += 2u) {
-        // An odd last row is compared with itself again: a tie, which changes nothing.
-        let next = min(at + 1u, end - 1u);
-        let a = row(at);
-        let b = row(next);
-        let a0 = squared(a, q0);
-        if (a0 < best0) { best0 = a0; found0 = at; }
-        let b0 = squared(b, q0);
-        if (b0 < best0) { best0 = b0; found0 = next; }
-        let a1 = squared(a, q1);
-        if (a1 < best1) { best1 = a1; found1 = at; }
-        let b1 = squared(b, q1);
-        if (b1 < best1) { best1 = b1; found1 = next; }
-        let a2 = squared(a, q2);
-        if (a2 < best2) { best2 = a2; found2 = at; }
-        let b2 = squared(b, q2);
-        if (b2 < best2) { best2 = b2; found2 = next; }
-        let a3 = squared(a, q3);
-        if (a3 < best3) { best3 = a3; found3 = at; }
-        let b3 = squared(b, q3);
-        if (b3 < best3) { best3 = b3; found3 = next; }
-        let a4 = squared(a, q4);
-        if (a4 < best4) { best4 = a4; found4 = at; }
-        let b4 = squared(b, q4);
-        if (b4 < best4) { best4 = b4; found4 = next; }
-        let a5 = squared(a, q5);
-        if (a5 < best5) { best5 = a5; found5 = at; }
-        let b5 = squared(b, q5);
-        if (b5 < best5) { best5 = b5; found5 = next; }
-        let a6 = squared(a, q6);
-        if (a6 < best6) { best6 = a6; found6 = at; }
-        let b6 = squared(b, q6);
-        if (b6 < best6) { best6 = b6; found6 = next; }
-        let a7 = squared(a, q7);
-        if (a7 < best7) { best7 = a7; found7 = at; }
-        let b7 = squared(b, q7);
-        if (b7 < best7) { best7 = b7; found7 = next; }
+    let four = 4u * LANES;
+    let q0 = load_four(first + 0u * four);
+    let q1 = load_four(first + 1u * four);
+    let q2 = load_four(first + 2u * four);
+    let q3 = load_four(first + 3u * four);
+    let q4 = load_four(first + 4u * four);
+    let q5 = load_four(first + 5u * four);
+    let q6 = load_four(first + 6u * four);
+    let q7 = load_four(first + 7u * four);
+    let blocks = (params.candidates + params.block - 1u) / params.block;
+    let last = min((group.y + 1u) * params.run, blocks);
+    for (var block = group.y * params.run; block < last; block++) {
+        var best0 = LEAST;
+        var best1 = LEAST;
+        var best2 = LEAST;
+        var best3 = LEAST;
+        var best4 = LEAST;
+        var best5 = LEAST;
+        var best6 = LEAST;
+        var best7 = LEAST;
+        let end = min((block + 1u) * params.block, params.candidates);
+        for (var at = block * params.block; at < end; at++) {
+            let row = load_row(at);
+            best0 = max(best0, scores(row, q0));
+            best1 = max(best1, scores(row, q1));
+            best2 = max(best2, scores(row, q2));
+            best3 = max(best3, scores(row, q3));
+            best4 = max(best4, scores(row, q4));
+            best5 = max(best5, scores(row, q5));
+            best6 = max(best6, scores(row, q6));
+            best7 = max(best7, scores(row, q7));
+        }
+        write(block, first + 0u * four, best0);
+        write(block, first + 1u * four, best1);
+        write(block, first + 2u * four, best2);
+        write(block, first + 3u * four, best3);
+        write(block, first + 4u * four, best4);
+        write(block, first + 5u * four, best5);
+        write(block, first + 6u * four, best6);
+        write(block, first + 7u * four, best7);
     }
-    write(group.y, first + 0u * LANES, best0, found0);
-    write(group.y, first + 1u * LANES, best1, found1);
-    write(group.y, first + 2u * LANES, best2, found2);
-    write(group.y, first + 3u * LANES, best3, found3);
-    write(group.y, first + 4u * LANES, best4, found4);
-    write(group.y, first + 5u * LANES, best5, found5);
-    write(group.y, first + 6u * LANES, best6, found6);
-    write(group.y, first + 7u * LANES, best7, found7);
 }

@@ -4,7 +4,7 @@
 // features  [frames][4 * QUADS]
 // whole     [WHOLES][envs]
 // action    [envs][TRAJECTORY]     normalised
-// queries   [envs][4 * QUADS]      padded with zeros
+// queries   [envs][4 * QUADS]      the last number is 1, see search_wide
 
 #import layout
 
@@ -30,5 +30,5 @@ fn query(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < TRAJECTORY; i++) {
         queries[out + POSE + i] = action[env * TRAJECTORY + i];
     }
-    queries[out + FEATURE] = 0.0;
+    queries[out + FEATURE] = 1.0;
 }

@@ -16,6 +16,7 @@ struct Params {
     clock: u32,
     offset: u32,
     everywhere: u32,
+    spread: u32,
     half_side: f32,
     reach: f32,
 }
@@ -38,7 +39,8 @@ fn reset(@builtin(global_invocation_id) id: vec3u) {
     if (params.everywhere == 0u && ended[params.offset + env] == RUNNING) { return; }
     let start = random4(params.seed, env, params.clock, START);
     whole[FRAME * envs + env] = candidates[index_below(start.x, params.candidates)];
-    whole[AGE * envs + env] = 0u;
+    // At the very start ages are spread, so that not all episodes are truncated at once.
+    whole[AGE * envs + env] = index_below(start.y, params.spread);
 
     // A normalised pair of Gaussians points everywhere alike.
     let east = gaussian(random4(params.seed, env, params.clock, START + 2u));

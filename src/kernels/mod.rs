@@ -3,7 +3,7 @@
 //!
 //! A step of the world, in order:
 //! [`observe`] what the policy sees, [`act`] draw its action, [`query`] put the question to the
-//! database, [`search_wide`] or [`search_tile`] and [`search_merge`] find the nearest candidate,
+//! database, [`search_wide`] or [`search_tile`] and [`search_exact`] find the nearest candidate,
 //! [`mod@step`] play it and reward, [`reset`] where an episode ended. After a rollout [`gae`] judges
 //! the actions and [`tally`] sums up the episodes.
 
@@ -14,7 +14,7 @@ pub mod observe;
 pub mod query;
 pub mod reset;
 pub mod rng;
-pub mod search_merge;
+pub mod search_exact;
 pub mod search_tile;
 pub mod search_wide;
 pub mod step;

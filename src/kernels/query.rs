@@ -42,6 +42,6 @@ pub fn twin(
         let frame = whole[whole::FRAME * envs + env] as usize;
         row[..POSE].copy_from_slice(&features[frame][..POSE]);
         row[POSE..FEATURE].copy_from_slice(&action[env * TRAJECTORY..(env + 1) * TRAJECTORY]);
-        row[FEATURE..].fill(0.0);
+        row[FEATURE..].fill(1.0);
     }
 }

@@ -16,6 +16,8 @@ crate::shader_params! {
         pub offset: u32,
         /// 1 to start everywhere, whatever `ended` says.
         pub everywhere: u32,
+        /// Episodes start at a random age below this; 0 and 1 mean at age 0.
+        pub spread: u32,
         /// Half the side of the square of targets around the start, m.
         pub half_side: f32,
         /// Targets are farther than this, m.
@@ -56,9 +58,10 @@ pub fn twin(
             continue;
         }
         let draw = |stream| random4(params.seed, env as u32, params.clock, stream);
-        let start = index_below(draw(START)[0], params.candidates);
+        let [first, age, ..] = draw(START);
+        let start = index_below(first, params.candidates);
         whole[whole::FRAME * envs + env] = candidates[start as usize];
-        whole[whole::AGE * envs + env] = 0;
+        whole[whole::AGE * envs + env] = index_below(age, params.spread);
 
         let (east, north) = (gaussian(draw(START + 2)), gaussian(draw(START + 3)));
         let length = (east * east + north * north).sqrt();

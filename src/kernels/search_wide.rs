@@ -1,4 +1,5 @@
-//! Brute-force search for software adapters. Shader: `shaders/search/search_wide.wgsl`.
+//! Scores the blocks of the database for every query, on software adapters.
+//! Shader: `shaders/search/search_wide.wgsl`.
 
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::database::PADDED;
@@ -8,12 +9,14 @@ crate::shader_params! {
         /// Queries.
         pub count: u32,
         pub candidates: u32,
-        /// Rows a workgroup compares.
-        pub chunk: u32,
+        /// Rows a block.
+        pub block: u32,
+        /// Blocks an invocation scores.
+        pub run: u32,
     }
 }
 
-/// Queries a workgroup answers.
+/// Queries a workgroup scores.
 const QUERIES: u32 =
     shader::search_wide::constants::LANES * shader::search_wide::constants::QUERIES;
 
@@ -21,53 +24,47 @@ pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,
     queries: &Buffer<f32>,
-    distance: &Buffer<f32>,
-    index: &Buffer<u32>,
+    score: &Buffer<f32>,
     params: &Params,
 ) {
+    let blocks = params.candidates.div_ceil(params.block);
     let groups = [
         params.count.div_ceil(QUERIES),
-        params.candidates.div_ceil(params.chunk),
+        blocks.div_ceil(params.run),
         1,
     ];
     gpu.launch(
         &shader::SEARCH_WIDE,
         groups,
-        &[rows, queries, distance, index],
+        &[rows, queries, score],
         params,
     );
 }
 
-/// The plain form of every search: the squared distance of the nearest row of each chunk, and
-/// the lowest index that has it.
-pub fn twin(
-    rows: &[[f32; PADDED]],
-    queries: &[[f32; PADDED]],
-    distance: &mut [f32],
-    index: &mut [u32],
-    params: &Params,
-) {
+pub fn twin(rows: &[[f32; PADDED]], queries: &[[f32; PADDED]], score: &mut [f32], params: &Params) {
     let count = params.count as usize;
-    for (chunk, part) in rows.chunks(params.chunk as usize).enumerate() {
+    for (block, rows) in rows.chunks(params.block as usize).enumerate() {
         for (at, query) in queries.iter().enumerate().take(count) {
-            let (mut best, mut found) = (f32::MAX, 0);
-            for (i, row) in part.iter().enumerate() {
-                let d = squared(row, query);
-                if d < best {
-                    (best, found) = (d, i);
-                }
-            }
-            distance[chunk * count + at] = best;
-            index[chunk * count + at] = chunk as u32 * params.chunk + found as u32;
+            let best = rows
+                .iter()
+                .map(|row| dot(row, query))
+                .fold(f32::MIN, f32::max);
+            score[block * count + at] = best;
         }
     }
 }
 
-/// Squared Euclidean distance, summed in the order of the dimensions.
-#[inline]
-pub fn squared(row: &[f32; PADDED], query: &[f32; PADDED]) -> f32 {
-    row.iter().zip(query).fold(0.0, |sum, (r, q)| {
-        let d = r - q;
-        d.mul_add(d, sum)
-    })
+fn dot(row: &[f32; PADDED], query: &[f32; PADDED]) -> f32 {
+    row.iter().zip(query).map(|(r, q)| r * q).sum()
+}
+
+/// A row with minus half its square in the last place, as the scoring shaders read it.
+pub fn with_half_square(row: &[f32; PADDED]) -> [f32; PADDED] {
+    let mut row = *row;
+    let square: f64 = row[..PADDED - 1]
+        .iter()
+        .map(|&r| f64::from(r) * f64::from(r))
+        .sum();
+    row[PADDED - 1] = (-0.5 * square) as f32;
+    row
 }

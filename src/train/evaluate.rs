@@ -141,7 +141,7 @@ pub fn evaluate(
     task: Plane,
     episodes: usize,
 ) -> Result<Report> {
-    let mut world = CpuWorld::new(database.clone(), task, episodes, 1, EPISODES_SEED);
+    let mut world = CpuWorld::fresh(database.clone(), task, episodes, EPISODES_SEED);
     let mut phases = vec![Phase::Reaching; episodes];
     let (mut times, mut ratios, mut walked, mut delays) = (vec![], vec![], 0.0, vec![]);
     for step in 1..=task.max_steps + PATIENCE {
@@ -228,7 +228,7 @@ pub fn walks(
     task: Plane,
     episodes: usize,
 ) -> Result<Vec<Walk>> {
-    let mut world = CpuWorld::new(database.clone(), task, episodes, 1, EPISODES_SEED);
+    let mut world = CpuWorld::fresh(database.clone(), task, episodes, EPISODES_SEED);
     let field = |world: &CpuWorld, field: usize, env: usize| world.real[field * episodes + env];
     let headings: Vec<[f32; 2]> = (0..episodes)
         .map(|env| {

@@ -58,7 +58,14 @@ impl CpuWorld {
             device: Device::flex(),
             database,
         };
-        world.reset(true);
+        world.reset(true, task.max_steps);
+        world
+    }
+
+    /// Worlds that all start their first episode at age 0, for episodes that are counted.
+    pub fn fresh(database: Arc<Database>, task: Plane, envs: usize, seed: u32) -> Self {
+        let mut world = Self::new(database, task, envs, 1, seed);
+        world.reset(true, 0);
         world
     }
 
@@ -67,8 +74,8 @@ impl CpuWorld {
         self.clock as usize % self.horizon * self.envs
     }
 
-    /// Starts new episodes, `everywhere` or where this step ended one.
-    pub fn reset(&mut self, everywhere: bool) {
+    /// Starts new episodes, `everywhere` or where this step ended one, at ages below `spread`.
+    fn reset(&mut self, everywhere: bool, spread: u32) {
         let params = reset::Params {
             envs: self.envs as u32,
             candidates: self.database.candidates.len() as u32,
@@ -76,6 +83,7 @@ impl CpuWorld {
             clock: self.clock,
             offset: self.offset() as u32,
             everywhere: everywhere.into(),
+            spread,
             half_side: self.task.half_side,
             reach: self.task.reach,
         };
@@ -183,7 +191,7 @@ impl World for CpuWorld {
         let mut truncated = std::mem::take(&mut self.truncated);
         self.see(&mut truncated, end::TRUNCATED);
         self.truncated = truncated;
-        self.reset(false);
+        self.reset(false, 0);
         self.clock += 1;
     }
 

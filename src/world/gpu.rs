@@ -6,7 +6,7 @@ use crate::gpu::tensor::{from_buffer, to_buffer};
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::layout::{OBSERVATION, end, real, whole};
 use crate::kernels::{
-    act, gae, observe, query, reset, search_merge, search_tile, search_wide, step, tally,
+    act, gae, observe, query, reset, search_exact, search_tile, search_wide, step, tally,
 };
 use crate::motion::database::{Database, PADDED};
 use crate::motion::features::TRAJECTORY;
@@ -78,6 +78,7 @@ impl GpuWorld {
             clock: self.clock,
             offset: self.offset(),
             everywhere: everywhere.into(),
+            spread: if everywhere { self.task.max_steps } else { 0 },
             half_side: self.task.half_side,
             reach: self.task.reach,
         };
@@ -237,87 +238,88 @@ impl World for GpuWorld {
     }
 }
 
-/// The brute-force search, in the form that suits the adapter.
+/// The search over the whole database, in the form that suits the adapter.
 pub struct Search {
-    /// `[candidates][PADDED]`
+    /// `[candidates][PADDED]`, with half squares: see [`search_wide::with_half_square`].
     rows: Buffer<f32>,
     candidates: u32,
     count: u32,
-    chunk: u32,
-    /// `[chunks][count]`
-    distance: Buffer<f32>,
-    index: Buffer<u32>,
+    block: u32,
+    longest: f32,
+    /// `[blocks][count]`
+    score: Buffer<f32>,
     matched: Buffer<u32>,
 }
 
-/// Workgroups along the database that keep a device busy with few queries.
-const CHUNKS: u32 = 32;
-/// Rows a chunk at least, and at most: an invocation of `search_wide` looks at two rows a loop
-/// iteration and lavapipe silently stops after 65,535 iterations.
-const ROWS: std::ops::RangeInclusive<u32> = 512..=65_536;
+/// Rows a block at least: one tile of `search_tile`.
+const BLOCK: u32 = 64;
+/// Blocks at most: `search_exact` passes over all of them twice, and lavapipe silently stops after
+/// 65,535 loop iterations.
+const BLOCKS: u32 = 16_384;
+/// Blocks an invocation scores: enough work for each, enough invocations for all.
+const RUN: u32 = 32;
 
 impl Search {
     /// For batches of `count` queries.
     pub fn new(gpu: &Gpu, rows: &[[f32; PADDED]], count: usize) -> Self {
         let candidates = rows.len() as u32;
-        let chunk = candidates
-            .div_ceil(CHUNKS)
-            .clamp(*ROWS.start(), *ROWS.end())
-            .next_multiple_of(64);
-        let pieces = candidates.div_ceil(chunk) as usize * count;
+        let block = BLOCK * candidates.div_ceil(BLOCK * BLOCKS);
+        let halved: Vec<_> = rows.iter().map(search_wide::with_half_square).collect();
+        let square = halved
+            .iter()
+            .map(|row| -2.0 * row[PADDED - 1])
+            .fold(0.0, f32::max);
         Search {
-            rows: Buffer::from_slice(gpu, rows.as_flattened()),
+            rows: Buffer::from_slice(gpu, halved.as_flattened()),
             candidates,
             count: count as u32,
-            chunk,
-            distance: Buffer::zeroed(gpu, pieces),
-            index: Buffer::zeroed(gpu, pieces),
+            block,
+            longest: square.sqrt(),
+            score: Buffer::zeroed(gpu, candidates.div_ceil(block) as usize * count),
             matched: Buffer::zeroed(gpu, count),
         }
     }
 
-    /// Nearest row of every query `[count][PADDED]`.
+    /// Nearest row of every query `[count][PADDED]`, whose last number must be 1.
     pub fn nearest(&self, gpu: &Gpu, queries: &Buffer<f32>) -> &Buffer<u32> {
         let Search {
             candidates,
             count,
-            chunk,
+            block,
+            longest,
             ..
         } = *self;
         if gpu.software {
             let params = search_wide::Params {
                 count,
                 candidates,
-                chunk,
+                block,
+                run: RUN,
             };
-            search_wide::launch(
-                gpu,
-                &self.rows,
-                queries,
-                &self.distance,
-                &self.index,
-                &params,
-            );
+            search_wide::launch(gpu, &self.rows, queries, &self.score, &params);
         } else {
             let params = search_tile::Params {
                 count,
                 candidates,
-                chunk,
+                block,
+                run: RUN,
             };
-            search_tile::launch(
-                gpu,
-                &self.rows,
-                queries,
-                &self.distance,
-                &self.index,
-                &params,
-            );
+            search_tile::launch(gpu, &self.rows, queries, &self.score, &params);
         }
-        let params = search_merge::Params {
+        let params = search_exact::Params {
             count,
-            chunks: candidates.div_ceil(chunk),
+            candidates,
+            block,
+            longest,
         };
-        search_merge::launch(gpu, &self.distance, &self.index, &self.matched, &params);
+        search_exact::launch(
+            gpu,
+            &self.rows,
+            queries,
+            &self.score,
+            &self.matched,
+            &params,
+        );
         &self.matched
     }
 }

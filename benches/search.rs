@@ -1,0 +1,80 @@
+//! Exact search, in queries a second: one query on one core, and a batch on all of them.
+//!
+//! `cargo bench --bench search` uses the synthetic motion; with `FOOTWORK_DATA` a database file or
+//! a folder of BVH files. Queries are the pose of one random frame with the future of another, and
+//! noise on top, as a policy at the start of training asks.
+
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use footwork::kernels::rng::{gaussian, index_below, random4};
+use footwork::kernels::search_exact;
+use footwork::motion::database::PADDED;
+use footwork::motion::features::{FEATURE, POSE};
+use footwork::motion::normalise::Weights;
+use footwork::search::Index;
+use footwork::train::data;
+use std::hint::black_box;
+use std::path::PathBuf;
+
+fn queries(rows: &[[f32; PADDED]], noise: f32, count: u32) -> Vec<[f32; PADDED]> {
+    let pick =
+        |i, stream| &rows[index_below(random4(1, i, 0, stream)[0], rows.len() as u32) as usize];
+    (0..count)
+        .map(|i| {
+            let (pose, future) = (pick(i, 0), pick(i, 1));
+            std::array::from_fn(|d| match d {
+                0..POSE => pose[d],
+                POSE..FEATURE => future[d] + noise * gaussian(random4(2, i, d as u32, 0)),
+                _ => 1.0,
+            })
+        })
+        .collect()
+}
+
+fn search(criterion: &mut Criterion) {
+    let path = std::env::var_os("FOOTWORK_DATA").map(PathBuf::from);
+    let (database, _) =
+        data::load(path.as_deref(), Weights::PAPER).expect("the data of FOOTWORK_DATA");
+    let rows = database.rows();
+    let index = Index::build(&rows);
+    eprintln!(
+        "{} candidates, index {:.1} MB",
+        rows.len(),
+        index.bytes() as f64 / 1e6
+    );
+    let mut group = criterion.benchmark_group("search");
+    for (name, noise) in [("calm", 0.1), ("noisy", 1.0)] {
+        let queries = queries(&rows, noise, 4096);
+        group.throughput(Throughput::Elements(queries.len() as u64));
+        group.bench_function(format!("pruned, one core, {name}"), |b| {
+            b.iter(|| {
+                queries
+                    .iter()
+                    .map(|query| u64::from(index.nearest(query).index))
+                    .sum::<u64>()
+            });
+        });
+        group.bench_function(format!("pruned, all cores, {name}"), |b| {
+            b.iter_batched_ref(
+                || vec![0; queries.len()],
+                |found| index.nearest_all(black_box(&queries), found),
+                BatchSize::LargeInput,
+            );
+        });
+    }
+    let queries = queries(&rows, 1.0, 16);
+    group.throughput(Throughput::Elements(queries.len() as u64));
+    group.bench_function("plain, one core", |b| {
+        let params = search_exact::Params {
+            count: 16,
+            candidates: rows.len() as u32,
+            block: 64,
+            longest: 0.0,
+        };
+        let mut matched = [0; 16];
+        b.iter(|| search_exact::twin(&rows, black_box(&queries), &[], &mut matched, &params));
+    });
+    group.finish();
+}
+
+criterion_group! { name = benches; config = Criterion::default().sample_size(10); targets = search }
+criterion_main!(benches);

@@ -1,0 +1,49 @@
+//! The plane task's environments alone, in steps a second: random actions, no networks.
+//!
+//! `cargo bench --bench world` uses the synthetic motion; with `FOOTWORK_DATA` a database file or
+//! a folder of BVH files. Lavapipe and a real GPU are measured where there is one.
+
+use burn::tensor::Tensor;
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use footwork::gpu::{Choice, Device};
+use footwork::motion::features::TRAJECTORY;
+use footwork::motion::normalise::Weights;
+use footwork::train::data;
+use footwork::world::{self, Plane};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+fn world(criterion: &mut Criterion) {
+    let path = std::env::var_os("FOOTWORK_DATA").map(PathBuf::from);
+    let (database, _) =
+        data::load(path.as_deref(), Weights::PAPER).expect("the data of FOOTWORK_DATA");
+    let database = Arc::new(database);
+    let mut group = criterion.benchmark_group("world");
+    for choice in [Choice::Cpu, Choice::Lavapipe, Choice::Gpu] {
+        let Ok(device) = Device::open(choice) else {
+            eprintln!("no {choice:?} here");
+            continue;
+        };
+        for envs in [256, 2048] {
+            let mut world = world::open(&device, &database, Plane::default(), envs, 16, 1);
+            let tensors = device.tensors();
+            let mean = Tensor::<2>::zeros([envs, TRAJECTORY], &tensors);
+            let log_std = Tensor::<1>::zeros([TRAJECTORY], &tensors);
+            group.throughput(Throughput::Elements(envs as u64 * 16));
+            group.bench_function(format!("{choice:?}, {envs} environments"), |b| {
+                b.iter(|| {
+                    for _ in 0..16 {
+                        let (action, _) = world.act(mean.clone(), log_std.clone());
+                        world.step(action);
+                        world.observe();
+                    }
+                    device.sync().expect("the device is there");
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group! { name = benches; config = Criterion::default().sample_size(10); targets = world }
+criterion_main!(benches);

@@ -1,0 +1,67 @@
+//! The nearest candidate of every query. Shader: `shaders/search/search_exact.wgsl`.
+
+use crate::gpu::kernel::groups;
+use crate::gpu::{Buffer, Gpu, shader};
+use crate::motion::database::PADDED;
+use crate::motion::features::FEATURE;
+
+crate::shader_params! {
+    pub struct Params for search_exact {
+        /// Queries.
+        pub count: u32,
+        pub candidates: u32,
+        /// Rows a block of scores.
+        pub block: u32,
+        /// Length of the longest row.
+        pub longest: f32,
+    }
+}
+
+pub fn launch(
+    gpu: &Gpu,
+    rows: &Buffer<f32>,
+    queries: &Buffer<f32>,
+    score: &Buffer<f32>,
+    matched: &Buffer<u32>,
+    params: &Params,
+) {
+    let groups = groups(&shader::SEARCH_EXACT, params.count as usize);
+    gpu.launch(
+        &shader::SEARCH_EXACT,
+        groups,
+        &[rows, queries, score, matched],
+        params,
+    );
+}
+
+/// The plain form of every search: all rows, whatever their score.
+pub fn twin(
+    rows: &[[f32; PADDED]],
+    queries: &[[f32; PADDED]],
+    _score: &[f32],
+    matched: &mut [u32],
+    params: &Params,
+) {
+    for (query, matched) in queries.iter().zip(matched).take(params.count as usize) {
+        let (mut best, mut found) = (f32::MAX, 0);
+        for (index, row) in rows.iter().enumerate() {
+            let distance = squared(row, query);
+            if distance < best {
+                (best, found) = (distance, index);
+            }
+        }
+        *matched = found as u32;
+    }
+}
+
+/// Squared distance of two feature rows in four interleaved sums, the order of every form of the
+/// search: so they all round alike.
+#[inline]
+pub fn squared(row: &[f32; PADDED], query: &[f32; PADDED]) -> f32 {
+    let mut sum = [0.0f32; 4];
+    for i in 0..FEATURE {
+        let d = row[i] - query[i];
+        sum[i % 4] = d.mul_add(d, sum[i % 4]);
+    }
+    (sum[0] + sum[1]) + (sum[2] + sum[3])
+}
