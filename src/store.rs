@@ -11,19 +11,18 @@ use std::path::{Path, PathBuf};
 /// What went wrong with a file.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    #[error("cannot read {path}: {error}")]
+    #[error("cannot read {path}: {error}; check that it exists and may be read")]
     Read {
         path: PathBuf,
         error: std::io::Error,
     },
-    #[error("cannot write {path}: {error}")]
-    Write {
-        path: PathBuf,
-        error: std::io::Error,
-    },
-    #[error("{path} is not a footwork {kind}")]
+    #[error(
+        "cannot write {path}: {error}; nothing was left there: check the folder, its rights and the free space"
+    )]
+    Write { path: PathBuf, error: String },
+    #[error("{path} is not a footwork {}", spelled(.kind))]
     Foreign { path: PathBuf, kind: &'static str },
-    #[error("{path} is a footwork {found}, not a {wanted}")]
+    #[error("{path} is a footwork {}, not a {}", spelled(.found), spelled(.wanted))]
     OtherKind {
         path: PathBuf,
         found: String,
@@ -46,6 +45,14 @@ pub enum StoreError {
 pub struct Format {
     pub kind: &'static str,
     pub version: u32,
+}
+
+/// A kind in full; files have only eight bytes for it.
+fn spelled(kind: &str) -> &str {
+    match kind {
+        "checkpt" => "checkpoint",
+        other => other,
+    }
 }
 
 const MAGIC: &[u8; 8] = b"footwork";
@@ -81,29 +88,35 @@ impl Arrays {
 
 /// Writes a file whole or not at all.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
-    let failed = |error| StoreError::Write {
-        path: path.to_path_buf(),
-        error,
-    };
+    replace(path, bytes).map_err(|error| {
+        // Not where the temporary file was: that helps nobody.
+        let cause = error.get_ref().and_then(|inner| inner.source());
+        StoreError::Write {
+            path: path.to_path_buf(),
+            error: cause.map_or_else(|| error.to_string(), |cause| cause.to_string()),
+        }
+    })
+}
+
+/// Writes beside the place and renames.
+fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    // Renaming would put a plain file in the place of a device or a pipe.
+    if path.metadata().is_ok_and(|there| !there.is_file()) {
+        return Err(std::io::Error::other("no regular file can be there"));
+    }
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
-    let mut file = tempfile::Builder::new()
-        .prefix(".footwork-")
-        .tempfile_in(folder)
-        .map_err(failed)?;
-    file.write_all(bytes).map_err(failed)?;
-    file.as_file().sync_all().map_err(failed)?;
-    // A temporary file is private; what it becomes is as readable as any other new file.
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".footwork-");
+    // A temporary file is private; this one will be as public as the umask makes files.
     #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        file.as_file()
-            .set_permissions(std::fs::Permissions::from_mode(0o644))
-            .map_err(failed)?;
-    }
-    file.persist(path).map_err(|error| failed(error.error))?;
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    file.persist(path)?;
     Ok(())
 }
 
@@ -125,7 +138,7 @@ pub fn save<H: Serialize>(
     })
     .map_err(|error| StoreError::Write {
         path: path.to_path_buf(),
-        error: error.into(),
+        error: error.to_string(),
     })?;
     let mut rest = (json.len() as u64).to_le_bytes().to_vec();
     rest.extend(json);
@@ -202,6 +215,9 @@ pub fn load<H: DeserializeOwned>(path: &Path, format: Format) -> Result<(H, Arra
             .ok_or_else(|| damaged(&format!("array `{name}` is cut off")))?;
         arrays.0.push((name, array.to_vec()));
         data = after;
+    }
+    if !data.is_empty() {
+        return Err(damaged("it is longer than its contents"));
     }
     Ok((contents.header, arrays))
 }

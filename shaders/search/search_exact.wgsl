@@ -7,10 +7,14 @@
 // square adds g R^2 / 2, the distance compared in the end g (|q| + R)^2 / 2. A block whose score is
 // more than twice their sum below the best holds no nearest row; 128 u (|q| + R)^2 is more.
 //
+// Lavapipe silently stops an invocation after 65,535 loop iterations. A far-away query leaves every
+// block in question, so four rows an iteration are compared, and a launch looks at a bounded run of
+// blocks; the next one goes on from the row in `matched`.
+//
 // rows     [candidates][QUADS] of vec4   normalised features; the last number is not compared
 // queries  [count][QUADS] of vec4
 // score    [blocks][count]
-// matched  [count]
+// matched  [count]                       read if `first` is not 0
 
 #import layout
 
@@ -18,6 +22,9 @@ struct Params {
     count: u32,
     candidates: u32,
     block: u32,
+    // The blocks compared in this launch: first .. last - 1.
+    first: u32,
+    last: u32,
     // Length of the longest row.
     longest: f32,
 }
@@ -30,19 +37,31 @@ struct Params {
 
 const MARGIN = 7.6293945e-6; // 128 * 2^-24
 
+struct Feature { a: vec4f, b: vec4f, c: vec4f, d: vec4f, e: vec4f, f: vec4f, g: vec4f }
+
+fn squared(row: u32, q: Feature) -> f32 {
+    let i = row * QUADS;
+    let a = rows[i] - q.a;
+    let b = rows[i + 1u] - q.b;
+    let c = rows[i + 2u] - q.c;
+    let d = rows[i + 3u] - q.d;
+    let e = rows[i + 4u] - q.e;
+    let f = rows[i + 5u] - q.f;
+    let g = vec4f(rows[i + 6u].xyz, 0.0) - q.g;
+    let sum = fma(g, g, fma(f, f, fma(e, e, fma(d, d, fma(c, c, fma(b, b, a * a))))));
+    return (sum.x + sum.y) + (sum.z + sum.w);
+}
+
 @compute @workgroup_size(64)
 fn search_exact(@builtin(global_invocation_id) id: vec3u) {
     let at = id.x;
     if (at >= params.count) { return; }
     let i = at * QUADS;
-    let a = queries[i];
-    let b = queries[i + 1u];
-    let c = queries[i + 2u];
-    let d = queries[i + 3u];
-    let e = queries[i + 4u];
-    let f = queries[i + 5u];
-    let g = vec4f(queries[i + 6u].xyz, 0.0);
-    let squares = a * a + b * b + c * c + d * d + e * e + f * f + g * g;
+    let q = Feature(
+        queries[i], queries[i + 1u], queries[i + 2u], queries[i + 3u], queries[i + 4u], queries[i + 5u],
+        vec4f(queries[i + 6u].xyz, 0.0),
+    );
+    let squares = q.a * q.a + q.b * q.b + q.c * q.c + q.d * q.d + q.e * q.e + q.f * q.f + q.g * q.g;
     let reach = sqrt((squares.x + squares.y) + (squares.z + squares.w)) + params.longest;
 
     let blocks = (params.candidates + params.block - 1u) / params.block;
@@ -54,24 +73,25 @@ fn search_exact(@builtin(global_invocation_id) id: vec3u) {
 
     var best = 3.4e38;
     var found = 0u;
-    for (var block = 0u; block < blocks; block++) {
+    if (params.first > 0u) {
+        found = matched[at];
+        best = squared(found, q);
+    }
+    for (var block = params.first; block < params.last; block++) {
         if (score[block * params.count + at] < least) { continue; }
-        let end = min((block + 1u) * params.block, params.candidates);
-        for (var row = block * params.block; row < end; row++) {
-            let j = row * QUADS;
-            let ga = rows[j] - a;
-            let gb = rows[j + 1u] - b;
-            let gc = rows[j + 2u] - c;
-            let gd = rows[j + 3u] - d;
-            let ge = rows[j + 4u] - e;
-            let gf = rows[j + 5u] - f;
-            let gg = vec4f(rows[j + 6u].xyz, 0.0) - g;
-            let sum = fma(gg, gg, fma(gf, gf, fma(ge, ge, fma(gd, gd, fma(gc, gc, fma(gb, gb, ga * ga))))));
-            let distance = (sum.x + sum.y) + (sum.z + sum.w);
-            if (distance < best) {
-                best = distance;
-                found = row;
-            }
+        let end = min((block + 1u) * params.block, params.candidates) - 1u;
+        for (var row = block * params.block; row <= end; row += 4u) {
+            // Past the end the last row again, which is not nearer than itself.
+            let near = vec4f(
+                squared(row, q),
+                squared(min(row + 1u, end), q),
+                squared(min(row + 2u, end), q),
+                squared(min(row + 3u, end), q),
+            );
+            if (near[0] < best) { best = near[0]; found = row + 0u; }
+            if (near[1] < best) { best = near[1]; found = row + 1u; }
+            if (near[2] < best) { best = near[2]; found = row + 2u; }
+            if (near[3] < best) { best = near[3]; found = row + 3u; }
         }
     }
     matched[at] = found;

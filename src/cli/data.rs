@@ -49,7 +49,7 @@ pub struct Import {
     #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
     /// Metres of one unit of the files [default: found from the skeleton's height]
-    #[arg(long, value_name = "METRES")]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     unit: Option<f32>,
     /// A TOML file that names the joints of the roles that are not found by name
     #[arg(long, value_name = "FILE")]
@@ -66,9 +66,9 @@ pub struct Synth {
     /// The database file to write
     #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
-    #[arg(long, default_value_t = performer::MINUTES)]
+    #[arg(long, default_value_t = performer::MINUTES, allow_negative_numbers = true)]
     minutes: f32,
-    #[arg(long, default_value_t = data::SYNTHETIC_SEED)]
+    #[arg(long, default_value_t = data::SYNTHETIC_SEED, allow_negative_numbers = true)]
     seed: u64,
     /// Also write every clip as a BVH file to this folder
     #[arg(long, value_name = "DIR")]
@@ -98,6 +98,9 @@ impl Data {
 
 impl Import {
     fn run(self) -> Result<()> {
+        if self.unit.is_some_and(|unit| !(1e-6..=1e3).contains(&unit)) {
+            return Err(Usage("--unit must be from 0.000001 to 1000 metres".into()).into());
+        }
         let options = ImportOptions {
             unit_m: self.unit,
             roles: self.roles,
@@ -117,6 +120,10 @@ impl Synth {
             return Err(Usage("--minutes must be from 0.1 to 1000".into()).into());
         }
         let (clips, roles) = performer::perform(self.seed, self.minutes);
+        save(
+            &Database::build(&clips, roles, self.weights.into())?,
+            &self.out,
+        )?;
         if let Some(folder) = &self.bvh {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("cannot make {}", folder.display()))?;
@@ -124,10 +131,7 @@ impl Synth {
                 bvh::write(&folder.join(format!("{}.bvh", clip.name)), clip)?;
             }
         }
-        save(
-            &Database::build(&clips, roles, self.weights.into())?,
-            &self.out,
-        )
+        Ok(())
     }
 }
 

@@ -19,7 +19,12 @@ pub struct Eval {
     /// A run's folder, or one of its checkpoints
     run: PathBuf,
     /// Episodes, the same ones for every policy
-    #[arg(long, default_value_t = 1000, value_name = "N")]
+    #[arg(
+        long,
+        default_value_t = 1000,
+        value_name = "N",
+        allow_negative_numbers = true
+    )]
     episodes: usize,
     /// Judge scripted motion matching beside it: a straight trajectory to the target
     #[arg(long)]
@@ -68,20 +73,18 @@ impl Eval {
     /// The run's folder, and the checkpoint: the given one or the last.
     fn locate(&self) -> Result<(Folder, PathBuf)> {
         if self.run.is_file() {
-            let folder = self
-                .run
-                .parent()
-                .and_then(|checkpoints| checkpoints.parent());
-            let folder = folder.context("a checkpoint is judged inside its run's folder")?;
-            let folder = if folder.as_os_str().is_empty() {
-                std::path::Path::new(".")
-            } else {
-                folder
-            };
-            return Ok((Folder::open(folder)?, self.run.clone()));
+            let whole = std::path::absolute(&self.run)?;
+            let folder = whole.ancestors().nth(2).map(Folder::open);
+            let folder = folder.and_then(Result::ok).with_context(|| {
+                format!(
+                    "{} does not lie in the checkpoints of a run: give a run's folder, or one of its checkpoints where it was written",
+                    self.run.display()
+                )
+            })?;
+            return Ok((folder, self.run.clone()));
         }
         let folder = Folder::open(&self.run)?;
-        let last = folder.checkpoint("last");
+        let last = folder.last()?;
         Ok((folder, last))
     }
 }

@@ -6,6 +6,7 @@ mod train;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
+use footwork::motion::error::Error as MotionError;
 use footwork::train::config::ConfigError;
 
 /// Trains character controllers: motion capture in, a policy that moves a full-body character out.
@@ -43,9 +44,9 @@ pub fn run() -> Result<()> {
 
 /// 2 for mistakes of usage, 1 for everything else.
 pub fn exit_code(error: &anyhow::Error) -> u8 {
-    if error.is::<Usage>() || error.is::<ConfigError>() {
-        2
-    } else {
-        1
+    let roles = matches!(error.downcast_ref(), Some(MotionError::RolesFile { .. }));
+    match error.is::<Usage>() || error.is::<ConfigError>() || roles {
+        true => 2,
+        false => 1,
     }
 }

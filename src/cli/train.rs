@@ -29,19 +29,19 @@ pub struct Plane {
     #[arg(long, value_enum)]
     device: Option<Choice>,
     /// Environments stepped together
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     envs: Option<usize>,
     /// Stop after this many environment steps [default: 1000000]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     steps: Option<u64>,
     /// Stop after this time, like 90s, 5m or 1h30m
-    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
+    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, allow_hyphen_values = true)]
     max_time: Option<std::time::Duration>,
     /// Stop at this share of successful evaluation episodes, like 0.99
-    #[arg(long, value_name = "SHARE")]
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     stop_success: Option<f64>,
     /// The same seed on the same device gives the same result [default: 1]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seed: Option<u32>,
     /// `fast` as measured here, or `paper` with the paper's settings [default: fast]
     #[arg(long, value_enum)]
@@ -69,7 +69,7 @@ impl Plane {
     fn run(self) -> Result<()> {
         let interrupted = on_interrupt()?;
         let resumed = self.resume.as_deref().map(Folder::open).transpose()?;
-        let config = match &resumed {
+        let mut config = match &resumed {
             Some(folder) => self.limits(folder.read_config()?),
             None => self.fresh()?,
         };
@@ -79,18 +79,23 @@ impl Plane {
         for note in notes {
             eprintln!("note: {note}");
         }
+        if config.weights != database.weights {
+            eprintln!(
+                "note: the database was made with other weights than asked for; its own hold"
+            );
+            config.weights = database.weights;
+        }
         let checkpoint = match &resumed {
-            Some(folder) => Some(Checkpoint::load_for(
-                &folder.checkpoint("last"),
-                database.fingerprint,
-            )?),
+            Some(folder) => Some(Checkpoint::load_for(&folder.last()?, database.fingerprint)?),
             None => None,
         };
+        if let Some(checkpoint) = &checkpoint {
+            checkpoint.check_same(&config)?;
+        }
         let folder = match resumed {
-            Some(folder) => folder,
-            None => Folder::create(self.out.as_deref(), TASK)?,
+            Some(folder) => folder.write_config(&config).map(|()| folder)?,
+            None => Folder::create(self.out.as_deref(), TASK, &config)?,
         };
-        folder.write_config(&config)?;
         introduce(&config, &folder, &database, &device);
         let summary = train(
             &config,

@@ -5,15 +5,51 @@ use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::database::PADDED;
 use crate::motion::features::FEATURE;
 
+/// What is searched.
+#[derive(Clone, Copy, Debug)]
+pub struct Params {
+    /// Queries.
+    pub count: u32,
+    pub candidates: u32,
+    /// Rows a block of scores.
+    pub block: u32,
+    /// Length of the longest row.
+    pub longest: f32,
+}
+
 crate::shader_params! {
-    pub struct Params for search_exact {
+    /// One launch of the shader.
+    pub struct Pass for search_exact {
         /// Queries.
         pub count: u32,
         pub candidates: u32,
         /// Rows a block of scores.
         pub block: u32,
+        /// The blocks compared: `first .. last`.
+        pub first: u32,
+        pub last: u32,
         /// Length of the longest row.
         pub longest: f32,
+    }
+}
+
+/// Rows compared in one launch at most, at four an iteration: with a pass over the scores of all
+/// blocks that stays below the 65,535 iterations after which lavapipe silently stops looping.
+const ROWS: u32 = 1 << 17;
+
+impl Params {
+    /// The launches that together look at every block.
+    pub fn passes(self) -> impl Iterator<Item = Pass> {
+        let blocks = self.candidates.div_ceil(self.block);
+        let run = (ROWS / self.block).max(1);
+        (0..blocks).step_by(run as usize).map(move |first| Pass {
+            count: self.count,
+            candidates: self.candidates,
+            block: self.block,
+            first,
+            last: blocks.min(first + run),
+            longest: self.longest,
+        })
     }
 }
 
@@ -26,12 +62,14 @@ pub fn launch(
     params: &Params,
 ) {
     let groups = groups(&shader::SEARCH_EXACT, params.count as usize);
-    gpu.launch(
-        &shader::SEARCH_EXACT,
-        groups,
-        &[rows, queries, score, matched],
-        params,
-    );
+    for pass in params.passes() {
+        gpu.launch(
+            &shader::SEARCH_EXACT,
+            groups,
+            &[rows, queries, score, matched],
+            &pass,
+        );
+    }
 }
 
 /// The plain form of every search: all rows, whatever their score.

@@ -268,8 +268,26 @@ impl Database {
             fits
         });
         let sizes = [features.len(), ground.len(), hips.len(), end];
-        if !consecutive || sizes != [frames; 4] || rotations.len() != frames * joints {
+        if frames == 0 || !consecutive || sizes != [frames; 4] {
             return Err(damaged("clips and arrays do not fit together"));
+        }
+        if !header.skeleton.is_tree() || !header.roles.joints().iter().all(|&role| role < joints) {
+            return Err(damaged("its skeleton is none"));
+        }
+        if rotations.len() != frames * joints {
+            return Err(damaged("skeleton and rotations do not fit together"));
+        }
+        let numbers = [
+            features.as_flattened(),
+            ground.as_flattened(),
+            hips.as_flattened(),
+            rotations.as_flattened(),
+        ];
+        if !numbers
+            .iter()
+            .all(|numbers| numbers.iter().all(|number| number.is_finite()))
+        {
+            return Err(damaged("it has numbers that are not finite"));
         }
         let hips = hips.into_iter().map(Vec3::from_array).collect();
         let rotations = rotations.into_iter().map(Quat::from_array).collect();

@@ -1,5 +1,6 @@
 //! What can go wrong between a file and a motion.
 
+use crate::store::StoreError;
 use std::path::{Path, PathBuf};
 
 pub type Result<T> = std::result::Result<T, Error>;
@@ -7,17 +8,14 @@ pub type Result<T> = std::result::Result<T, Error>;
 /// Each message says what is wrong, where, and what to do about it.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    #[error("cannot read {}: {source}; check that it exists and may be read", .path.display())]
+    #[error("cannot read {}: {error}; check that it exists and may be read", .path.display())]
     Read {
         path: PathBuf,
-        source: std::io::Error,
+        error: std::io::Error,
     },
 
-    #[error("cannot write {}: {source}; nothing was left there; check the folder, its rights and the free space", .path.display())]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] StoreError),
 
     #[error("{} holds more than {limit} bytes, too many for one file of motion; cut it into shorter recordings", .path.display())]
     TooLarge { path: PathBuf, limit: u64 },
@@ -45,8 +43,9 @@ pub enum Error {
     RolesFile { path: PathBuf, problem: String },
 
     #[error(
-        "unknown skeleton: no joint found for {missing}; its joints are {joints}. Give a roles \
-         file: lines like `left_foot = \"joint name\"`, one for each of the roles named first"
+        "unknown skeleton: no joint found for {missing}; its joints are {joints}. Name them in a \
+         file, a line like `left_foot = \"joint name\"` for each, and import with \
+         `footwork data import --roles FILE`"
     )]
     MissingRoles { missing: String, joints: String },
 
@@ -55,7 +54,9 @@ pub enum Error {
     )]
     Roles { problem: String },
 
-    #[error("no metres per file unit can be found: {problem}; give the unit in metres")]
+    #[error(
+        "no metres per file unit can be found: {problem}; give it with `footwork data import --unit METRES`"
+    )]
     Unit { problem: String },
 
     #[error(
@@ -81,8 +82,8 @@ pub enum Error {
     },
 
     /// An error of a function that knows no files, met while working on this one.
-    #[error("{}: {source}", .path.display())]
-    In { path: PathBuf, source: Box<Error> },
+    #[error("{}: {error}", .path.display())]
+    In { path: PathBuf, error: Box<Error> },
 }
 
 impl Error {
@@ -90,7 +91,7 @@ impl Error {
     pub fn within(self, path: &Path) -> Error {
         Error::In {
             path: path.to_path_buf(),
-            source: Box::new(self),
+            error: Box::new(self),
         }
     }
 }

@@ -79,9 +79,9 @@ fn check_unit(options: &ImportOptions) -> Result<()> {
 
 /// The file itself, or the BVH files of a folder by name; never empty.
 fn files(path: &Path) -> Result<Vec<PathBuf>> {
-    let unreadable = |source| Error::Read {
+    let unreadable = |error| Error::Read {
         path: path.to_path_buf(),
-        source,
+        error,
     };
     if !std::fs::metadata(path).map_err(unreadable)?.is_dir() {
         return Ok(vec![path.to_path_buf()]);
@@ -129,9 +129,9 @@ struct Listing {
 impl Listing {
     /// The manifest in the file's folder, else the one above, else an empty one.
     fn beside(file: &Path) -> Result<Listing> {
-        let file = file.canonicalize().map_err(|source| Error::Read {
+        let file = file.canonicalize().map_err(|error| Error::Read {
             path: file.to_path_buf(),
-            source,
+            error,
         })?;
         let mut prefix = String::new();
         for folder in file.ancestors().skip(1).take(2) {
@@ -207,6 +207,7 @@ fn prepare(
         Some(unit) => unit,
         None => units::find(&recording.skeleton, roles)?,
     };
+    units::check(unit, &recording.skeleton, roles)?;
     let end = frames.saturating_sub(tail);
     let clip = recording.into_clip(&name(file.file_stem()), unit, head.min(end)..end);
     let mut clip = resample(clip);

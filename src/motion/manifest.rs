@@ -27,9 +27,9 @@ pub fn read(path: &Path) -> Result<Option<Manifest>> {
     match std::fs::read_to_string(path) {
         Ok(text) => parse(&text, path).map(Some),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(source) => Err(Error::Read {
+        Err(error) => Err(Error::Read {
             path: path.to_path_buf(),
-            source,
+            error,
         }),
     }
 }

@@ -58,11 +58,10 @@ impl Roles {
     ///
     /// Errors: an unreadable file, unknown keys, unknown joints (each names the nearest known).
     pub fn read(path: &Path, skeleton: &Skeleton) -> Result<Roles> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::Read {
-            path: path.to_path_buf(),
-            source,
-        })?;
-        let given = given(&text, skeleton).map_err(|problem| Error::RolesFile {
+        let text =
+            std::fs::read_to_string(path).map_err(|error| format!("cannot be read: {error}"));
+        let given = text.and_then(|text| given(&text, skeleton));
+        let given = given.map_err(|problem| Error::RolesFile {
             path: path.to_path_buf(),
             problem,
         })?;
@@ -217,7 +216,9 @@ fn by_name(role: usize, names: &[String]) -> Option<usize> {
 /// The roles that a file names, in the order of [`ROLES`].
 fn given(text: &str, skeleton: &Skeleton) -> std::result::Result<[Option<usize>; 9], String> {
     // The parser's message shows the line and points at the place.
-    let table: toml::Table = text.parse().map_err(|error| format!("{error}"))?;
+    let table: toml::Table = text
+        .parse()
+        .map_err(|error: toml::de::Error| error.to_string().trim().to_string())?;
     let mut given = [None; 9];
     for (key, value) in &table {
         let role = ROLES.iter().position(|role| role == key).ok_or_else(|| {
@@ -242,7 +243,7 @@ fn given(text: &str, skeleton: &Skeleton) -> std::result::Result<[Option<usize>;
 }
 
 /// ", did you mean 'x'?" for the most similar of the known words.
-fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> String {
+pub fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> String {
     known
         .min_by_key(|known| strsim::damerau_levenshtein(word, known))
         .map(|known| format!(", did you mean '{known}'?"))

@@ -23,6 +23,18 @@ impl Skeleton {
         self.names.len()
     }
 
+    /// Whether the lists fit together and every parent precedes its children.
+    pub fn is_tree(&self) -> bool {
+        let joints = self.joints();
+        let parents = self.parents.iter().enumerate();
+        self.parents.len() == joints
+            && self.offsets.len() == joints
+            && self.ends.iter().all(|&(joint, _)| joint < joints)
+            && parents.fold(joints > 0, |tree, (joint, parent)| {
+                tree && parent.map_or(joint == 0, |parent| parent < joint)
+            })
+    }
+
     /// Same joints under the same parents; bone lengths may differ (subjects of one capture).
     pub fn same_tree(&self, other: &Skeleton) -> bool {
         self.names == other.names && self.parents == other.parents

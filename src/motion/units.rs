@@ -15,6 +15,8 @@ pub const COMMON: [f32; 6] = [1.0, 0.3048, 0.056444, 0.0254, 0.01, 0.001];
 
 const LEGS: std::ops::Range<f32> = 0.55..1.15;
 const USUAL_LEG: f32 = 0.85;
+/// No body has legs outside of this, m: a unit that says so is a mistake.
+const POSSIBLE_LEGS: std::ops::Range<f32> = 0.05..20.0;
 
 /// Metres per unit of a skeleton whose lengths are in file units: one of [`COMMON`] if one
 /// fits, else whatever makes the legs 0.85 m long.
@@ -29,6 +31,17 @@ pub fn find(skeleton: &Skeleton, roles: &Roles) -> Result<f32> {
     }
     let fits = |unit: &f32| LEGS.contains(&(unit * leg));
     Ok(COMMON.into_iter().find(fits).unwrap_or(USUAL_LEG / leg))
+}
+
+/// Refuses a given unit that cannot be meant.
+pub fn check(unit: f32, skeleton: &Skeleton, roles: &Roles) -> Result<()> {
+    let leg = unit * leg(skeleton, roles);
+    if POSSIBLE_LEGS.contains(&leg) {
+        return Ok(());
+    }
+    Err(Error::Unit {
+        problem: format!("with {unit} m the legs would be {leg} m long"),
+    })
 }
 
 /// Mean length of the two chains from the top of the thigh to the ankle, in the skeleton's unit.

@@ -64,17 +64,18 @@ impl Shape {
         self.log_std + TRAJECTORY
     }
 
-    /// Gaussian weights that keep the signal's size, nearly none in the policy's last layer, so
-    /// that learning starts from the plain distribution; zero biases.
+    /// Gaussian weights of unit gain, nearly none in the last layers, so that learning starts
+    /// from the plain distribution and the mean value (as RLlib's networks do); zero biases.
     pub fn init(&self, seed: u32, log_std: f32) -> Vec<f32> {
         const STREAM: u32 = 0x494e_4954;
+        const LAST_GAIN: f32 = 0.01;
         let mut flat = vec![0.0; self.parameters()];
-        for (layers, last_gain) in [(&self.actor, 0.01), (&self.critic, 1.0)] {
+        for layers in [&self.actor, &self.critic] {
             for (depth, layer) in layers.iter().enumerate() {
                 let gain = if depth + 1 == layers.len() {
-                    last_gain
+                    LAST_GAIN
                 } else {
-                    5.0 / 3.0
+                    1.0
                 };
                 let deviation = gain / (layer.inputs as f32).sqrt();
                 for at in layer.weights() {

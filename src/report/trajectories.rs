@@ -43,7 +43,7 @@ const GAP: f64 = 28.0;
 const TITLE: f64 = 56.0;
 const BOTTOM: f64 = 76.0;
 
-/// Draws the groups side by side, to one scale, as a PNG. The viewer looks down, so
+/// Draws the groups side by side, to one scale, as a PNG; a walk is cut where it leaves the panel. The viewer looks down, so
 /// z grows downwards and a turn to the left looks like one.
 ///
 /// # Errors
@@ -84,13 +84,15 @@ struct Square {
 }
 
 impl Square {
-    /// The smallest square that shows every path and target, with room for the labels.
+    /// The smallest square that shows every start and target, with room for labels and turns.
+    /// Lost walks leave it: shown whole, the longest would make all others too small to see.
     fn around(groups: &[Group]) -> Self {
-        const BESIDE: f64 = 1.6;
-        const ABOVE: f64 = 0.9;
+        const BESIDE: f64 = 2.5;
+        const ABOVE: f64 = 2.5;
         let all = |axis: usize| {
             let paths = groups.iter().flat_map(|group| &group.paths);
-            let values = paths.flat_map(move |path| path.points.iter().chain([&path.target]));
+            let values =
+                paths.flat_map(move |path| path.points.first().into_iter().chain([&path.target]));
             let values = values.filter(|point| finite(point));
             chart::extent(values.map(|point| f64::from(point[axis]))).unwrap_or((0.0, 0.0))
         };
@@ -188,12 +190,19 @@ fn draw_circle(
 fn draw_path(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
     let colour = chart::colour(path.colour);
     let line = walked(plot, path);
-    canvas.line(&line, colour, 3.0)?;
+    for piece in line.split(|&point| !inside(&plot.frame, point)) {
+        canvas.line(piece, colour, 3.0)?;
+    }
     match line.last() {
+        Some(&end) if !inside(&plot.frame, end) => Ok(()),
         Some(&end) if path.reached => canvas.disc(end, 4.5, colour, 1.0),
         Some(&end) => draw_cross(canvas, end, colour),
         None => Ok(()),
     }
+}
+
+fn inside(frame: &Frame, (x, y): Pixel) -> bool {
+    (frame.left..=frame.right).contains(&x) && (frame.top..=frame.bottom).contains(&y)
 }
 
 fn draw_cross(canvas: &mut Canvas<'_>, (x, y): Pixel, colour: RGBColor) -> Result<(), Error> {

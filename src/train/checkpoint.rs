@@ -1,5 +1,6 @@
 //! A run at one moment, complete: it goes on from here as if it had never stopped.
 
+use super::config::Config;
 use crate::kernels::layout::{OBSERVATION, real, whole};
 use crate::ppo::Ppo;
 use crate::ppo::adam::Adam;
@@ -56,13 +57,17 @@ pub enum CheckpointError {
     #[error(transparent)]
     Store(#[from] StoreError),
     #[error(
-        "{path} was trained with another database (fingerprint {found:08x}, this one has {wanted:08x}): give the data of its config.toml"
+        "{path} was trained with another database (fingerprint {found:08x}, this one has {wanted:08x}): the data its config.toml names has changed; bring the former back, or start another run"
     )]
     Database {
         path: PathBuf,
         found: u32,
         wanted: u32,
     },
+    #[error(
+        "`{key}` in the run's config.toml is not what the run was started with: put it back, or start another run"
+    )]
+    Changed { key: &'static str },
     #[error(
         "{path} is of the task `{found}` with {found_width} observations, not `{wanted}` with {wanted_width}"
     )]
@@ -138,7 +143,22 @@ impl Checkpoint {
         header.world.whole = arrays.take("whole").ok_or_else(|| damaged("no whole"))?;
         let expected = Shape::new(&header.hidden).parameters();
         let envs = header.world.whole.len() / whole::FIELDS;
-        let fits = [parameters.len(), first_moment.len(), second_moment.len()] == [expected; 3]
+        let numbers = [
+            &parameters,
+            &first_moment,
+            &second_moment,
+            &value_moments,
+            &header.world.real,
+        ];
+        if !numbers
+            .into_iter()
+            .flatten()
+            .all(|number| number.is_finite())
+        {
+            return Err(damaged("it has numbers that are not finite"));
+        }
+        let fits = envs > 0
+            && [parameters.len(), first_moment.len(), second_moment.len()] == [expected; 3]
             && value_moments.len() == 2
             && header.world.real.len() == envs * real::FIELDS
             && header.world.whole.len() == envs * whole::FIELDS;
@@ -152,6 +172,21 @@ impl Checkpoint {
             second_moment,
             value_moments,
         })
+    }
+
+    /// Refuses to go on under another configuration than the one the run was started with.
+    pub fn check_same(&self, config: &Config) -> Result<(), CheckpointError> {
+        let (header, envs) = (&self.header, self.header.world.whole.len() / whole::FIELDS);
+        let same = [
+            ("ppo.envs", envs == config.ppo.envs),
+            ("ppo.hidden", header.hidden == config.ppo.hidden),
+            ("plane", header.plane == config.plane),
+            ("seed", header.seed == config.seed),
+        ];
+        match same.into_iter().find(|(_, same)| !same) {
+            None => Ok(()),
+            Some((key, _)) => Err(CheckpointError::Changed { key }),
+        }
     }
 
     /// Loads a checkpoint of the plane task for a database.

@@ -2,10 +2,12 @@
 
 use crate::gpu::Choice;
 use crate::motion::normalise::Weights;
+use crate::motion::roles::nearest;
 use crate::ppo::Ppo;
 use crate::world::Plane;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// A complete set of choices to start from.
@@ -57,18 +59,17 @@ pub enum ConfigError {
     },
     #[error("{path}: {message}")]
     Toml { path: PathBuf, message: String },
-    #[error("{path}, line {line}: unknown key `{key}`{hint}")]
-    UnknownKey {
+    #[error("{path}, line {line}: {problem}")]
+    Key {
         path: PathBuf,
         line: usize,
-        key: String,
-        hint: String,
+        problem: String,
     },
     #[error("`{key}` is {value}: {why}")]
     Value {
         key: &'static str,
         value: String,
-        why: &'static str,
+        why: String,
     },
 }
 
@@ -101,7 +102,7 @@ impl Config {
         })?;
         let toml = |message: String| ConfigError::Toml {
             path: path.to_path_buf(),
-            message,
+            message: message.trim().replace("\nin `", ", in `"),
         };
         let changes: toml::Table =
             toml::from_str(&text).map_err(|error| toml(error.to_string()))?;
@@ -114,13 +115,17 @@ impl Config {
         let mut table = Config::preset(preset)
             .complete()
             .map_err(|error| toml(error.to_string()))?;
-        overlay(&mut table, changes, path, &text)?;
+        overlay(&mut table, changes, "").map_err(|mistake| ConfigError::Key {
+            path: path.to_path_buf(),
+            line: line_of(&text, &mistake.key).unwrap_or(1),
+            problem: mistake.problem,
+        })?;
         let mut config: Config = table
             .try_into()
             .map_err(|error: toml::de::Error| toml(error.to_string()))?;
         config.data = config.data.filter(|data| !data.as_os_str().is_empty());
-        config.max_time_s = config.max_time_s.filter(|&seconds| seconds > 0.0);
-        config.stop_success = config.stop_success.filter(|&success| success > 0.0);
+        config.max_time_s = config.max_time_s.filter(|&seconds| seconds != 0.0);
+        config.stop_success = config.stop_success.filter(|&success| success != 0.0);
         Ok(config)
     }
 
@@ -135,127 +140,147 @@ impl Config {
 
     /// Rejects what cannot work before anything is opened or written.
     pub fn check(&self) -> Result<(), ConfigError> {
-        let ppo = &self.ppo;
-        let positive = |key, value: f64| match value > 0.0 && value.is_finite() {
-            true => Ok(()),
-            false => Err(ConfigError::Value {
-                key,
-                value: value.to_string(),
-                why: "it must be above zero",
-            }),
-        };
-        positive("ppo.envs", ppo.envs as f64)?;
-        positive("ppo.horizon", ppo.horizon as f64)?;
-        positive("ppo.epochs", ppo.epochs as f64)?;
-        positive("ppo.minibatch", ppo.minibatch as f64)?;
-        positive("ppo.learning_rate", ppo.learning_rate)?;
-        positive("ppo.clip", ppo.clip)?;
-        positive("steps", self.steps as f64)?;
-        positive("evaluate_every", self.evaluate_every as f64)?;
-        positive("checkpoint_every", self.checkpoint_every as f64)?;
-        positive("plane.half_side", self.plane.half_side.into())?;
-        positive("plane.reach", self.plane.reach.into())?;
-        positive("plane.max_steps", self.plane.max_steps.into())?;
-        self.max_time_s
-            .map_or(Ok(()), |seconds| positive("max_time_s", seconds))?;
-        for (key, value) in [("ppo.gamma", ppo.gamma), ("ppo.lambda", ppo.lambda)] {
-            if !(0.0..=1.0).contains(&value) {
-                let why = "it must lie between 0 and 1";
-                return Err(ConfigError::Value {
-                    key,
-                    value: value.to_string(),
-                    why,
-                });
-            }
+        const LONG: u64 = 1_000_000_000_000_000;
+        within("steps", self.steps, 1, LONG)?;
+        within("evaluate_every", self.evaluate_every, 1, LONG)?;
+        within("checkpoint_every", self.checkpoint_every, 1, LONG)?;
+        if let Some(seconds) = self.max_time_s {
+            within("max_time_s", seconds, 0.001, 1e9)?;
         }
-        if ppo.hidden.contains(&0) {
-            let why = "a layer needs at least one unit";
-            return Err(ConfigError::Value {
-                key: "ppo.hidden",
-                value: format!("{:?}", ppo.hidden),
-                why,
-            });
+        if let Some(success) = self.stop_success {
+            within("stop_success", success, 0.01, 1.0)?;
         }
-        if self
-            .stop_success
-            .is_some_and(|success| !(success > 0.0 && success <= 1.0))
-        {
-            let value = format!("{:?}", self.stop_success);
-            return Err(ConfigError::Value {
-                key: "stop_success",
-                value,
-                why: "it is a share, above 0 and up to 1",
-            });
-        }
-        if self.plane.reach >= self.plane.half_side {
-            let why = "no target can be drawn: it must be less than plane.half_side";
-            return Err(ConfigError::Value {
-                key: "plane.reach",
-                value: self.plane.reach.to_string(),
-                why,
-            });
-        }
-        if ppo.horizon > self.plane.max_steps as usize {
-            let why = "a rollout may hold one truncation an environment: at most plane.max_steps";
+        check_plane(&self.plane)?;
+        check_weights(&self.weights)?;
+        check_ppo(&self.ppo)?;
+        if self.ppo.horizon > self.plane.max_steps as usize {
             return Err(ConfigError::Value {
                 key: "ppo.horizon",
-                value: ppo.horizon.to_string(),
-                why,
-            });
-        }
-        if ppo.envs > 1 << 20 || ppo.batch() > 1 << 26 {
-            let why = "at most 1,048,576 environments and 67,108,864 samples an update";
-            return Err(ConfigError::Value {
-                key: "ppo.envs",
-                value: ppo.envs.to_string(),
-                why,
+                value: self.ppo.horizon.to_string(),
+                why: "a rollout may hold one truncation an environment: at most plane.max_steps"
+                    .into(),
             });
         }
         Ok(())
     }
 }
 
-/// Writes `changes` over `table`, refusing keys that `table` does not know.
-fn overlay(
-    table: &mut toml::Table,
-    changes: toml::Table,
-    path: &Path,
-    text: &str,
+/// A number in its range, ends included; NaN is in none.
+fn within<N: PartialOrd + Display>(
+    key: &'static str,
+    value: N,
+    least: N,
+    most: N,
 ) -> Result<(), ConfigError> {
+    if least <= value && value <= most {
+        return Ok(());
+    }
+    Err(ConfigError::Value {
+        key,
+        value: value.to_string(),
+        why: format!("it must lie between {least} and {most}"),
+    })
+}
+
+fn check_plane(plane: &Plane) -> Result<(), ConfigError> {
+    within("plane.half_side", plane.half_side, 0.1, 1000.0)?;
+    within("plane.reach", plane.reach, 0.001, 1000.0)?;
+    within("plane.bonus", plane.bonus, -1e6, 1e6)?;
+    within("plane.max_steps", plane.max_steps, 1, 10_000)?;
+    if plane.reach < plane.half_side {
+        return Ok(());
+    }
+    Err(ConfigError::Value {
+        key: "plane.reach",
+        value: plane.reach.to_string(),
+        why: "no target can be drawn: it must be less than plane.half_side".into(),
+    })
+}
+
+fn check_weights(weights: &Weights) -> Result<(), ConfigError> {
+    within("weights.foot_position", weights.foot_position, 0.0, 1e3)?;
+    within("weights.foot_velocity", weights.foot_velocity, 0.0, 1e3)?;
+    within("weights.root_velocity", weights.root_velocity, 0.0, 1e3)?;
+    // Actions are divided by these.
+    let (position, direction) = (weights.trajectory_position, weights.trajectory_direction);
+    within("weights.trajectory_position", position, 1e-3, 1e3)?;
+    within("weights.trajectory_direction", direction, 1e-3, 1e3)
+}
+
+fn check_ppo(ppo: &Ppo) -> Result<(), ConfigError> {
+    within("ppo.envs", ppo.envs, 1, 1 << 20)?;
+    within("ppo.horizon", ppo.horizon, 1, 10_000)?;
+    within("ppo.envs times ppo.horizon", ppo.batch(), 1, 1 << 26)?;
+    within("ppo.epochs", ppo.epochs, 1, 1000)?;
+    within("ppo.minibatch", ppo.minibatch, 1, 1 << 26)?;
+    within("ppo.learning_rate", ppo.learning_rate, 1e-9, 1.0)?;
+    within("ppo.final_rate", ppo.final_rate, 0.0, 1.0)?;
+    within("ppo.target_kl", ppo.target_kl, 0.0, 100.0)?;
+    within("ppo.gamma", ppo.gamma, 0.0, 1.0)?;
+    within("ppo.lambda", ppo.lambda, 0.0, 1.0)?;
+    within("ppo.clip", ppo.clip, 1e-3, 100.0)?;
+    within("ppo.value_clip", ppo.value_clip, 0.0, 1e6)?;
+    within("ppo.value_coefficient", ppo.value_coefficient, 0.0, 1e3)?;
+    within("ppo.entropy_coefficient", ppo.entropy_coefficient, 0.0, 1e3)?;
+    within("ppo.kl_coefficient", ppo.kl_coefficient, 0.0, 1e3)?;
+    within("ppo.kl_target", ppo.kl_target, 1e-6, 100.0)?;
+    within("ppo.max_gradient", ppo.max_gradient, 0.0, 1e6)?;
+    within("ppo.log_std", ppo.log_std, -10.0, 2.0)?;
+    within("the number of ppo.hidden layers", ppo.hidden.len(), 0, 8)?;
+    let mut widths = ppo.hidden.iter();
+    widths.try_for_each(|&width| within("a width of ppo.hidden", width, 1, 2048))
+}
+
+/// Writes `changes` over `table`, refusing keys that `table` does not know and values of another
+/// kind. `within` is the table's own name with a dot, if it has one.
+fn overlay(table: &mut toml::Table, changes: toml::Table, within: &str) -> Result<(), Mistake> {
     for (key, value) in changes {
-        match (table.get_mut(&key), value) {
-            (Some(toml::Value::Table(inner)), toml::Value::Table(changes)) => {
-                overlay(inner, changes, path, text)?;
+        let full = format!("{within}{key}");
+        let Some(known) = table.get_mut(&key) else {
+            let nearest = nearest(&key, table.keys().map(String::as_str));
+            return Err(Mistake {
+                problem: format!("unknown key `{full}`{nearest}"),
+                key: full,
+            });
+        };
+        match (known, value) {
+            (toml::Value::Table(inner), toml::Value::Table(changes)) => {
+                overlay(inner, changes, &format!("{full}."))?;
             }
-            (Some(known), value) => {
-                // Whole numbers stand for numbers.
-                *known = match (&known, value) {
-                    (toml::Value::Float(_), toml::Value::Integer(whole)) => {
-                        toml::Value::Float(whole as f64)
-                    }
-                    (_, value) => value,
-                };
-            }
-            (None, _) => {
-                let near = table.keys().max_by(|a, b| {
-                    strsim::jaro_winkler(a, &key).total_cmp(&strsim::jaro_winkler(b, &key))
-                });
-                let hint = near
-                    .map(|near| format!("; did you mean `{near}`?"))
-                    .unwrap_or_default();
-                let line = text
-                    .lines()
-                    .position(|line| line.trim_start().trim_start_matches('[').starts_with(&key));
-                return Err(ConfigError::UnknownKey {
-                    path: path.to_path_buf(),
-                    line: line.map_or(1, |line| line + 1),
-                    key,
-                    hint,
+            // Whole numbers stand for numbers.
+            (toml::Value::Float(known), toml::Value::Integer(whole)) => *known = whole as f64,
+            (known, value) if known.same_type(&value) => *known = value,
+            (known, value) => {
+                let (wanted, found) = (known.type_str(), value.type_str());
+                return Err(Mistake {
+                    problem: format!("`{full}` must be of the type {wanted}, not {found}"),
+                    key: full,
                 });
             }
         }
     }
     Ok(())
+}
+
+/// What is wrong with a key.
+struct Mistake {
+    /// With the tables it stands in, like `ppo.envs`.
+    key: String,
+    problem: String,
+}
+
+/// The line (from 1) of a TOML text that has a key, if the text is TOML and has it.
+fn line_of(text: &str, key: &str) -> Option<usize> {
+    let table = toml::de::DeTable::parse(text).ok()?;
+    let mut table = table.get_ref();
+    let mut names = key.split('.').peekable();
+    loop {
+        let (name, value) = table.get_key_value(names.next()?)?;
+        match (names.peek(), value.get_ref()) {
+            (Some(_), toml::de::DeValue::Table(inner)) => table = inner,
+            _ => return Some(1 + text[..name.span().start].matches('\n').count()),
+        }
+    }
 }
 
 fn fast() -> Ppo {
@@ -284,8 +309,8 @@ fn fast() -> Ppo {
 
 fn paper() -> Ppo {
     Ppo {
-        envs: 61,
-        horizon: 80,
+        envs: 122,
+        horizon: 40,
         epochs: 30,
         minibatch: 128,
         learning_rate: 5e-5,

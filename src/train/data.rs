@@ -4,7 +4,8 @@ use crate::motion::database::Database;
 use crate::motion::import::{ImportOptions, import};
 use crate::motion::normalise::Weights;
 use crate::motion::performer;
-use anyhow::{Context, Result};
+use crate::store::StoreError;
+use anyhow::{Result, bail};
 use std::path::Path;
 
 /// Seed of the embedded synthetic data: the same for every run.
@@ -15,7 +16,7 @@ pub const SYNTHETIC_SEED: u64 = 1;
 pub fn load(path: Option<&Path>, weights: Weights) -> Result<(Database, Vec<String>)> {
     let Some(path) = path else {
         let (clips, roles) = performer::perform(SYNTHETIC_SEED, performer::MINUTES);
-        let note = "no --data: training on synthetic motion of the built-in performer".to_string();
+        let note = "no data given: synthetic motion of the built-in performer".to_string();
         return Ok((Database::build(&clips, roles, weights)?, vec![note]));
     };
     let bvh = path
@@ -24,13 +25,14 @@ pub fn load(path: Option<&Path>, weights: Weights) -> Result<(Database, Vec<Stri
     if path.is_dir() || bvh {
         return from_bvh(path, &ImportOptions::default(), weights);
     }
-    let database = Database::load(path).with_context(|| {
-        format!(
-            "{} is neither a folder nor a .bvh file, so it was read as a database",
+    match Database::load(path) {
+        Ok(database) => Ok((database, Vec::new())),
+        Err(StoreError::Foreign { .. }) => bail!(
+            "{} is neither a folder, nor a .bvh file, nor a footwork database",
             path.display()
-        )
-    })?;
-    Ok((database, Vec::new()))
+        ),
+        Err(error) => Err(error.into()),
+    }
 }
 
 /// Imports BVH files.

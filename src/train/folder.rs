@@ -28,8 +28,9 @@ pub struct Summary {
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// Makes the folder of a new run: the given one, or the next free `runs/TASK-N`.
-    pub fn create(given: Option<&Path>, task: &str) -> Result<Self> {
+    /// Makes the folder of a new run: the given one, or the next free `runs/TASK-N`. Nothing is
+    /// left of it if it cannot be written to.
+    pub fn create(given: Option<&Path>, task: &str, config: &Config) -> Result<Self> {
         let path = match given {
             Some(path) => path.to_path_buf(),
             None => {
@@ -46,10 +47,17 @@ impl Folder {
             );
         }
         let folder = Folder(path);
-        let checkpoints = folder.checkpoints();
-        std::fs::create_dir_all(&checkpoints)
-            .with_context(|| format!("cannot make the run folder {}", folder.0.display()))?;
-        Ok(folder)
+        let made = std::fs::create_dir_all(folder.checkpoints())
+            .with_context(|| format!("cannot make the run folder {}", folder.0.display()));
+        match made.and_then(|()| folder.write_config(config)) {
+            Ok(()) => Ok(folder),
+            Err(error) => {
+                // Only folders that are empty go, and the first error is the one to tell.
+                let _ = std::fs::remove_dir(folder.checkpoints());
+                let _ = std::fs::remove_dir(&folder.0);
+                Err(error)
+            }
+        }
     }
 
     /// An existing run.
@@ -89,6 +97,22 @@ impl Folder {
     /// `last`, `best` or `steps-N`.
     pub fn checkpoint(&self, name: &str) -> PathBuf {
         self.checkpoints().join(format!("{name}.ckpt"))
+    }
+
+    /// The checkpoint that the run goes on from.
+    ///
+    /// # Errors
+    /// The run ended before its first.
+    pub fn last(&self) -> Result<PathBuf> {
+        let last = self.checkpoint("last");
+        if !last.exists() {
+            bail!(
+                "{} is missing: the run was stopped before it was saved; start it again with another --out, \
+                 or judge one of the other checkpoints there",
+                last.display()
+            );
+        }
+        Ok(last)
     }
 
     /// The periodic checkpoint at a number of steps; the names sort like the numbers.

@@ -5,7 +5,7 @@ use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// One update.
@@ -76,6 +76,7 @@ impl Row {
 /// Appends to a run's metrics and events.
 pub struct Recorder {
     lines: File,
+    path: PathBuf,
     events: EventWriter,
 }
 
@@ -85,8 +86,12 @@ pub fn read(path: &Path, up_to: u64) -> Result<Vec<Row>> {
     if !path.exists() {
         return Ok(Vec::new());
     }
-    let text =
-        std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = std::fs::read_to_string(path).with_context(|| {
+        format!(
+            "cannot read {}; move it away to go on without it",
+            path.display()
+        )
+    })?;
     let rows = text
         .lines()
         .map_while(|line| serde_json::from_str::<Row>(line).ok());
@@ -107,9 +112,14 @@ impl Recorder {
         let lines = lines.with_context(|| format!("cannot write {}", path.display()))?;
         let events = match known {
             [] => EventWriter::create(folder, unix_time())?,
-            _ => EventWriter::append(folder, unix_time())?,
+            _ => EventWriter::append(folder, unix_time())
+                .context("move TensorBoard's file away to go on without it")?,
         };
-        Ok(Recorder { lines, events })
+        Ok(Recorder {
+            lines,
+            path,
+            events,
+        })
     }
 
     pub fn write(&mut self, row: &Row) -> Result<()> {
@@ -117,7 +127,7 @@ impl Recorder {
         line.push('\n');
         self.lines
             .write_all(line.as_bytes())
-            .context("cannot write metrics.jsonl")?;
+            .with_context(|| format!("cannot write {}", self.path.display()))?;
         let now = unix_time();
         for (tag, value) in row.scalars() {
             self.events.scalar(tag, row.steps, now, value)?;

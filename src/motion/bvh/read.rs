@@ -21,9 +21,9 @@ const SLACK: f32 = 0.05;
 ///
 /// Errors: an unreadable, too large, binary, truncated or malformed file, with the line.
 pub fn read(path: &Path) -> Result<Recording> {
-    let unreadable = |source| Error::Read {
+    let unreadable = |error| Error::Read {
         path: path.to_path_buf(),
-        source,
+        error,
     };
     let too_large = || Error::TooLarge {
         path: path.to_path_buf(),

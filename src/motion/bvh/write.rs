@@ -12,10 +12,7 @@ const CENTIMETRES: f32 = 100.0;
 /// Writes a clip as a BVH file in centimetres, whole or not at all. See [`to_text`].
 pub fn write(path: &Path, clip: &Clip) -> Result<()> {
     let text = to_text(clip)?;
-    save(path, text.as_bytes()).map_err(|source| Error::Write {
-        path: path.to_path_buf(),
-        source,
-    })
+    Ok(crate::store::write_whole(path, text.as_bytes())?)
 }
 
 /// The text of a BVH file in centimetres: six channels for the root and three for the others,
@@ -139,21 +136,4 @@ fn write_motion(text: &mut String, clip: &Clip, order: &[usize]) {
         }
         text.push('\n');
     }
-}
-
-/// Writes beside the target and renames, so that a full disk leaves no half file.
-fn save(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    // Temporary files are private; a recording is as public as the user's umask makes files.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder)?;
-    std::io::Write::write_all(&mut file, bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(path)?;
-    Ok(())
 }

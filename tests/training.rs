@@ -1,0 +1,178 @@
+//! Whole trainings, short ones: they must learn, repeat bit for bit, go on after a stop as if there
+//! had been none, and leave the last good checkpoint alone when learning diverges.
+
+use footwork::gpu::{Choice, Device};
+use footwork::motion::database::Database;
+use footwork::motion::normalise::Weights;
+use footwork::motion::performer;
+use footwork::train::checkpoint::Checkpoint;
+use footwork::train::config::{Config, Preset};
+use footwork::train::evaluate::{Scripted, Trained, evaluate};
+use footwork::train::folder::{Folder, Summary};
+use footwork::train::trainer::train;
+use footwork::world::Plane;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+fn database(minutes: f32) -> Arc<Database> {
+    let (clips, roles) = performer::perform(1, minutes);
+    Arc::new(
+        Database::build(&clips, roles, Weights::PAPER).expect("synthetic motion can be matched"),
+    )
+}
+
+/// Small enough for a few updates to take no time.
+fn small(steps: u64) -> Config {
+    let mut config = Config::preset(Preset::Fast);
+    (config.ppo.envs, config.ppo.horizon, config.ppo.minibatch) = (64, 8, 128);
+    (config.steps, config.checkpoint_every) = (steps, 512);
+    config
+}
+
+fn run(
+    config: &Config,
+    database: &Arc<Database>,
+    device: Choice,
+    out: &Path,
+    from: Option<Checkpoint>,
+) -> anyhow::Result<Summary> {
+    let device = Device::open(device).expect("an adapter");
+    let folder = match from {
+        Some(_) => Folder::open(out)?,
+        None => Folder::create(Some(out), "plane")?,
+    };
+    folder.write_config(config)?;
+    train(
+        config,
+        &folder,
+        database,
+        &device,
+        from,
+        &AtomicBool::new(false),
+    )
+}
+
+/// Everything that must repeat: all but the time it took.
+fn state(out: &Path) -> Checkpoint {
+    let mut checkpoint =
+        Checkpoint::load(&out.join("checkpoints/last.ckpt")).expect("a checkpoint");
+    checkpoint.header.wall_s = 0.0;
+    checkpoint
+}
+
+#[test]
+fn learns_to_reach_targets_on_the_cpu() {
+    let out = tempfile::tempdir().expect("a folder");
+    let config = Config {
+        steps: 150_000,
+        ..Config::preset(Preset::Fast)
+    };
+    let summary = run(&config, &database(10.0), Choice::Cpu, out.path(), None).expect("a training");
+    assert!(summary.success >= 0.95, "{summary:?}");
+}
+
+#[test]
+fn learns_to_reach_targets_on_lavapipe() {
+    let out = tempfile::tempdir().expect("a folder");
+    let config = Config {
+        steps: 130_000,
+        ..Config::preset(Preset::Fast)
+    };
+    let summary =
+        run(&config, &database(2.0), Choice::Lavapipe, out.path(), None).expect("a training");
+    assert!(summary.success >= 0.8, "{summary:?}");
+}
+
+#[test]
+fn repeats_and_resumes_bit_for_bit_on_every_device() {
+    let database = database(1.0);
+    for device in [Choice::Cpu, Choice::Lavapipe] {
+        let [whole, again, halves] = [(); 3].map(|()| tempfile::tempdir().expect("a folder"));
+        let config = small(4 * 512);
+        run(&config, &database, device, whole.path(), None).expect("a training");
+        run(&config, &database, device, again.path(), None).expect("a training");
+        assert_eq!(
+            state(whole.path()),
+            state(again.path()),
+            "{device:?} repeats"
+        );
+
+        run(&small(2 * 512), &database, device, halves.path(), None).expect("a training");
+        let half =
+            Checkpoint::load(&halves.path().join("checkpoints/last.ckpt")).expect("a checkpoint");
+        run(&config, &database, device, halves.path(), Some(half)).expect("a training");
+        assert_eq!(
+            state(whole.path()),
+            state(halves.path()),
+            "{device:?} resumes"
+        );
+    }
+}
+
+#[test]
+fn another_seed_is_another_run() {
+    let database = database(1.0);
+    let [one, two] = [1, 2].map(|seed| {
+        let out = tempfile::tempdir().expect("a folder");
+        let config = Config { seed, ..small(512) };
+        run(&config, &database, Choice::Cpu, out.path(), None).expect("a training");
+        state(out.path()).parameters
+    });
+    assert_ne!(one, two);
+}
+
+#[test]
+fn divergence_stops_and_leaves_the_last_good_checkpoint() {
+    let out = tempfile::tempdir().expect("a folder");
+    let database = database(1.0);
+    run(&small(2 * 512), &database, Choice::Cpu, out.path(), None).expect("a training");
+    let good = state(out.path());
+    let mut config = small(40 * 512);
+    config.ppo.max_gradient = 0.0;
+    let mut from = good.clone();
+    from.header.learning_rate = 1e30;
+    let error =
+        run(&config, &database, Choice::Cpu, out.path(), Some(from)).expect_err("must diverge");
+    assert!(error.to_string().contains("diverged"), "{error:#}");
+    assert_eq!(state(out.path()), good);
+    let summary = std::fs::read_to_string(out.path().join("summary.json")).expect("a summary");
+    assert!(summary.contains("\"failure\""), "{summary}");
+}
+
+#[test]
+fn the_paper_preset_trains() {
+    let out = tempfile::tempdir().expect("a folder");
+    let mut config = Config::preset(Preset::Paper);
+    (config.steps, config.ppo.epochs) = (config.ppo.batch() as u64, 2);
+    let summary = run(&config, &database(1.0), Choice::Cpu, out.path(), None).expect("a training");
+    assert_eq!(summary.stopped_by, "steps");
+}
+
+#[test]
+fn faster_scripts_arrive_sooner_and_an_untrained_policy_hardly_ever() {
+    let database = database(10.0);
+    let judge = |speed| {
+        let script = Scripted {
+            database: &database,
+            speed,
+        };
+        evaluate(&script, &database, Plane::default(), 200).expect("an evaluation")
+    };
+    let (slow, quick) = (judge(1.0), judge(3.0));
+    assert!(
+        slow.success > 0.97 && quick.success > 0.97,
+        "{slow:?} {quick:?}"
+    );
+    assert!(
+        quick.time_to_target_mean_s < slow.time_to_target_mean_s,
+        "{slow:?} {quick:?}"
+    );
+    assert!(quick.mean_speed > slow.mean_speed && slow.path_ratio >= 1.0);
+
+    let config = Config::preset(Preset::Fast);
+    let shape = footwork::ppo::policy::Shape::new(&config.ppo.hidden);
+    let untrained = Trained::new(&config.ppo.hidden, &shape.init(1, 0.0));
+    let report = evaluate(&untrained, &database, Plane::default(), 200).expect("an evaluation");
+    assert!(report.success < 0.5, "{report:?}");
+}
