@@ -236,8 +236,9 @@ fn interleaved(add: impl Fn(usize, &mut [f32; LANES])) -> [f32; LANES] {
     "aarch64+neon"
 ))]
 fn nearest(index: &Index, query: &[f32; PADDED]) -> Nearest {
+    // Row 0 stands when nothing is nearer than infinity, as with a query that is not a number.
     let mut best = Nearest {
-        index: u32::MAX,
+        index: 0,
         distance: f32::INFINITY,
     };
     // First the group whose box is nearest: its winner lets most others be skipped.

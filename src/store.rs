@@ -17,7 +17,7 @@ pub enum StoreError {
         error: std::io::Error,
     },
     #[error(
-        "cannot write {path}: {error}; nothing was left there: check the folder, its rights and the free space"
+        "cannot write {path}: {error}; nothing was written: check the folder, its rights and the free space"
     )]
     Write { path: PathBuf, error: String },
     #[error("{path} is not a footwork {}", spelled(.kind))]
@@ -89,11 +89,12 @@ impl Arrays {
 /// Writes a file whole or not at all.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     replace(path, bytes).map_err(|error| {
-        // Not where the temporary file was: that helps nobody.
-        let cause = error.get_ref().and_then(|inner| inner.source());
+        // Without tempfile's "at path ...": where the temporary file was helps nobody.
+        let error = error.to_string();
+        let cause = error.split(" at path ").next().unwrap_or_default();
         StoreError::Write {
             path: path.to_path_buf(),
-            error: cause.map_or_else(|| error.to_string(), |cause| cause.to_string()),
+            error: cause.to_string(),
         }
     })
 }
@@ -102,7 +103,9 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
 fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     // Renaming would put a plain file in the place of a device or a pipe.
     if path.metadata().is_ok_and(|there| !there.is_file()) {
-        return Err(std::io::Error::other("no regular file can be there"));
+        return Err(std::io::Error::other(
+            "something is there that is no regular file",
+        ));
     }
     let folder = path
         .parent()

@@ -93,9 +93,11 @@ impl Plane {
             checkpoint.check_same(&config)?;
         }
         let folder = match resumed {
-            Some(folder) => folder.write_config(&config).map(|()| folder)?,
-            None => Folder::create(self.out.as_deref(), TASK, &config)?,
+            Some(folder) => folder,
+            None => Folder::create(self.out.as_deref(), TASK)?,
         };
+        let written = folder.write_config(&config);
+        written.inspect_err(|_| folder.remove_empty())?;
         introduce(&config, &folder, &database, &device);
         let summary = train(
             &config,

@@ -38,7 +38,7 @@ pub struct NoAdapter {
 #[derive(Clone)]
 pub enum Device {
     Cpu,
-    Gpu(Gpu),
+    Gpu(Box<Gpu>),
 }
 
 /// A wgpu device that burn's tensors and this program's kernels share.
@@ -53,14 +53,20 @@ pub struct Gpu {
     pub software: bool,
 }
 
+impl From<Gpu> for Device {
+    fn from(gpu: Gpu) -> Self {
+        Device::Gpu(Box::new(gpu))
+    }
+}
+
 impl Device {
     /// Opens the device. `Choice::Auto` never fails.
     pub fn open(choice: Choice) -> Result<Self, NoAdapter> {
         match choice {
             Choice::Cpu => Ok(Device::Cpu),
-            Choice::Gpu => Gpu::real().map(Device::Gpu),
-            Choice::Lavapipe => Gpu::lavapipe().map(Device::Gpu),
-            Choice::Auto => Ok(Gpu::real().map_or(Device::Cpu, Device::Gpu)),
+            Choice::Gpu => Gpu::real().map(Device::from),
+            Choice::Lavapipe => Gpu::lavapipe().map(Device::from),
+            Choice::Auto => Ok(Gpu::real().map_or(Device::Cpu, Device::from)),
         }
     }
 

@@ -42,19 +42,15 @@ pub fn twin(
     params: &Params,
 ) {
     let std: Vec<f32> = log_std.iter().map(|log| log.exp()).collect();
-    for env in 0..params.envs as usize {
+    for (env, log_prob) in log_prob.iter_mut().enumerate().take(params.envs as usize) {
         let mut sum = 0.0;
         for i in 0..TRAJECTORY {
-            let noise = gaussian(random4(
-                params.seed,
-                env as u32,
-                params.clock,
-                NOISE + i as u32,
-            ));
+            let bits = random4(params.seed, env as u32, params.clock, NOISE + i as u32);
+            let noise = gaussian(bits);
             let at = env * TRAJECTORY + i;
             action[at] = mean[at] + std[i] * noise;
             sum -= 0.5 * noise * noise + log_std[i] + HALF_LOG_TAU;
         }
-        log_prob[env] = sum;
+        *log_prob = sum;
     }
 }

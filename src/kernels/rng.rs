@@ -35,7 +35,7 @@ pub fn uniform01(bits: u32) -> f32 {
 /// `0 .. below`, by the high word of a product.
 #[inline]
 pub fn index_below(bits: u32, below: u32) -> u32 {
-    (u64::from(bits) * u64::from(below) >> 32) as u32
+    ((u64::from(bits) * u64::from(below)) >> 32) as u32
 }
 
 /// Standard normal from 128 random bits: the binomial count of 96 of them, smoothed by a uniform

@@ -272,7 +272,7 @@ impl Database {
             return Err(damaged("clips and arrays do not fit together"));
         }
         if !header.skeleton.is_tree() || !header.roles.joints().iter().all(|&role| role < joints) {
-            return Err(damaged("its skeleton is none"));
+            return Err(damaged("its skeleton is no tree of joints"));
         }
         if rotations.len() != frames * joints {
             return Err(damaged("skeleton and rotations do not fit together"));

@@ -55,7 +55,7 @@ pub enum Error {
     Roles { problem: String },
 
     #[error(
-        "no metres per file unit can be found: {problem}; give it with `footwork data import --unit METRES`"
+        "the unit of length is unclear: {problem}; give it with `footwork data import --unit METRES`"
     )]
     Unit { problem: String },
 

@@ -243,7 +243,7 @@ fn given(text: &str, skeleton: &Skeleton) -> std::result::Result<[Option<usize>;
 }
 
 /// ", did you mean 'x'?" for the most similar of the known words.
-pub fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> String {
+fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> String {
     known
         .min_by_key(|known| strsim::damerau_levenshtein(word, known))
         .map(|known| format!(", did you mean '{known}'?"))

@@ -2,7 +2,6 @@
 
 use crate::gpu::Choice;
 use crate::motion::normalise::Weights;
-use crate::motion::roles::nearest;
 use crate::ppo::Ppo;
 use crate::world::Plane;
 use clap::ValueEnum;
@@ -65,7 +64,7 @@ pub enum ConfigError {
         line: usize,
         problem: String,
     },
-    #[error("`{key}` is {value}: {why}")]
+    #[error("{key} is {value}: {why}")]
     Value {
         key: &'static str,
         value: String,
@@ -107,15 +106,16 @@ impl Config {
         let changes: toml::Table =
             toml::from_str(&text).map_err(|error| toml(error.to_string()))?;
         let preset = match changes.get("preset") {
-            Some(named) => {
+            Some(named @ toml::Value::String(_)) => {
                 Preset::deserialize(named.clone()).map_err(|error| toml(error.to_string()))?
             }
-            None => preset,
+            _ => preset,
         };
         let mut table = Config::preset(preset)
             .complete()
             .map_err(|error| toml(error.to_string()))?;
-        overlay(&mut table, changes, "").map_err(|mistake| ConfigError::Key {
+        let names = names(&table, "");
+        overlay(&mut table, changes, "", &names).map_err(|mistake| ConfigError::Key {
             path: path.to_path_buf(),
             line: line_of(&text, &mistake.key).unwrap_or(1),
             problem: mistake.problem,
@@ -226,29 +226,39 @@ fn check_ppo(ppo: &Ppo) -> Result<(), ConfigError> {
     within("ppo.kl_target", ppo.kl_target, 1e-6, 100.0)?;
     within("ppo.max_gradient", ppo.max_gradient, 0.0, 1e6)?;
     within("ppo.log_std", ppo.log_std, -10.0, 2.0)?;
-    within("the number of ppo.hidden layers", ppo.hidden.len(), 0, 8)?;
+    within("the length of ppo.hidden", ppo.hidden.len(), 0, 8)?;
     let mut widths = ppo.hidden.iter();
     widths.try_for_each(|&width| within("a width of ppo.hidden", width, 1, 2048))
 }
 
 /// Writes `changes` over `table`, refusing keys that `table` does not know and values of another
-/// kind. `within` is the table's own name with a dot, if it has one.
-fn overlay(table: &mut toml::Table, changes: toml::Table, within: &str) -> Result<(), Mistake> {
+/// kind. `within` is the table's own name with a dot, if it has one; `names` are all known keys.
+fn overlay(
+    table: &mut toml::Table,
+    changes: toml::Table,
+    within: &str,
+    names: &[String],
+) -> Result<(), Mistake> {
     for (key, value) in changes {
         let full = format!("{within}{key}");
         let Some(known) = table.get_mut(&key) else {
-            let nearest = nearest(&key, table.keys().map(String::as_str));
             return Err(Mistake {
-                problem: format!("unknown key `{full}`{nearest}"),
+                problem: format!("unknown key `{full}`{}", hint(&key, names)),
                 key: full,
             });
         };
         match (known, value) {
             (toml::Value::Table(inner), toml::Value::Table(changes)) => {
-                overlay(inner, changes, &format!("{full}."))?;
+                overlay(inner, changes, &format!("{full}."), names)?;
             }
             // Whole numbers stand for numbers.
             (toml::Value::Float(known), toml::Value::Integer(whole)) => *known = whole as f64,
+            (toml::Value::Integer(_), toml::Value::Integer(..0)) => {
+                return Err(Mistake {
+                    problem: format!("`{full}` must not be negative"),
+                    key: full,
+                });
+            }
             (known, value) if known.same_type(&value) => *known = value,
             (known, value) => {
                 let (wanted, found) = (known.type_str(), value.type_str());
@@ -260,6 +270,28 @@ fn overlay(table: &mut toml::Table, changes: toml::Table, within: &str) -> Resul
         }
     }
     Ok(())
+}
+
+/// All keys of a table and the tables in it, like `ppo` and `ppo.envs`.
+fn names(table: &toml::Table, within: &str) -> Vec<String> {
+    let mut all = Vec::new();
+    for (key, value) in table {
+        all.push(format!("{within}{key}"));
+        if let Some(inner) = value.as_table() {
+            all.extend(names(inner, &format!("{within}{key}.")));
+        }
+    }
+    all
+}
+
+/// Which known key may have been meant, in whatever table it stands.
+fn hint(key: &str, names: &[String]) -> String {
+    let last = |name: &str| name.rfind('.').map_or(0, |dot| dot + 1);
+    names
+        .iter()
+        .min_by_key(|name| strsim::damerau_levenshtein(key, &name[last(name)..]))
+        .map(|name| format!(", did you mean `{name}`?"))
+        .unwrap_or_default()
 }
 
 /// What is wrong with a key.

@@ -28,9 +28,8 @@ pub struct Summary {
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// Makes the folder of a new run: the given one, or the next free `runs/TASK-N`. Nothing is
-    /// left of it if it cannot be written to.
-    pub fn create(given: Option<&Path>, task: &str, config: &Config) -> Result<Self> {
+    /// Makes the folder of a new run: the given one, or the next free `runs/TASK-N`.
+    pub fn create(given: Option<&Path>, task: &str) -> Result<Self> {
         let path = match given {
             Some(path) => path.to_path_buf(),
             None => {
@@ -47,17 +46,17 @@ impl Folder {
             );
         }
         let folder = Folder(path);
-        let made = std::fs::create_dir_all(folder.checkpoints())
-            .with_context(|| format!("cannot make the run folder {}", folder.0.display()));
-        match made.and_then(|()| folder.write_config(config)) {
-            Ok(()) => Ok(folder),
-            Err(error) => {
-                // Only folders that are empty go, and the first error is the one to tell.
-                let _ = std::fs::remove_dir(folder.checkpoints());
-                let _ = std::fs::remove_dir(&folder.0);
-                Err(error)
-            }
-        }
+        std::fs::create_dir_all(folder.checkpoints())
+            .inspect_err(|_| folder.remove_empty())
+            .with_context(|| format!("cannot make the run folder {}", folder.0.display()))?;
+        Ok(folder)
+    }
+
+    /// Takes the folder away again, if nothing could be written to it.
+    pub fn remove_empty(&self) {
+        // Folders that hold something stay; the error that led here is the one to tell.
+        let _ = std::fs::remove_dir(self.checkpoints());
+        let _ = std::fs::remove_dir(&self.0);
     }
 
     /// An existing run.

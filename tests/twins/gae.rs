@@ -1,0 +1,257 @@
+//! Oracles: `gae::twin`, and the lambda-return as textbooks write it, in f64: the mean of all
+//! n-step returns, weighted with powers of lambda, each an explicit sum of rewards.
+//! Bar: roundings of the rollout's length times the absolute sum of what is added up.
+
+use crate::checked;
+use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, gpu};
+use bytemuck::cast_slice;
+use footwork::gpu::kernel::groups;
+use footwork::gpu::{Buffer, shader};
+use footwork::kernels::gae;
+use footwork::kernels::layout::end;
+
+struct Case {
+    reward: Vec<f32>,
+    ended: Vec<u32>,
+    value: Vec<f32>,
+    next_value: Vec<f32>,
+    final_value: Vec<f32>,
+    scale: [f32; 2],
+    params: gae::Params,
+}
+
+/// Advantages and target values.
+type Judged = (Vec<f32>, Vec<f32>);
+
+impl Case {
+    /// Steps end where `ended(step, env)` says so. Rewards of 1000 on arrival.
+    fn new(envs: usize, steps: usize, seed: u32, ended: impl Fn(usize, usize) -> u32) -> Self {
+        let mut draw = Draw::new(seed);
+        let samples = envs * steps;
+        let ended: Vec<u32> = (0..samples).map(|at| ended(at / envs, at % envs)).collect();
+        let arrival = |&ended: &u32| if ended == end::REACHED { 1000.0 } else { 0.0 };
+        Case {
+            reward: ended.iter().map(|e| arrival(e) + draw.normal()).collect(),
+            value: draw.normals(samples),
+            next_value: draw.normals(envs),
+            final_value: draw.normals(envs),
+            scale: [draw.within(300.0), 150.0 + draw.within(100.0)],
+            ended,
+            params: gae::Params {
+                envs: envs as u32,
+                steps: steps as u32,
+                gamma: 0.99,
+                lambda: 0.95,
+            },
+        }
+    }
+
+    fn samples(&self) -> usize {
+        self.reward.len()
+    }
+
+    fn poison(&self) -> Vec<f32> {
+        vec![POISON; self.samples() + 5]
+    }
+
+    fn twin(&self) -> Judged {
+        let (mut advantage, mut target) = (self.poison(), self.poison());
+        gae::twin(
+            &self.reward,
+            &self.ended,
+            &self.value,
+            &self.next_value,
+            &self.final_value,
+            &self.scale,
+            &mut advantage,
+            &mut target,
+            &self.params,
+        );
+        (advantage, target)
+    }
+
+    fn launch(&self) -> Judged {
+        let gpu = gpu();
+        let advantage = Buffer::from_slice(&gpu, &self.poison());
+        let target = Buffer::from_slice(&gpu, &self.poison());
+        gae::launch(
+            &gpu,
+            &Buffer::from_slice(&gpu, &self.reward),
+            &Buffer::from_slice(&gpu, &self.ended),
+            &Buffer::from_slice(&gpu, &self.value),
+            &Buffer::from_slice(&gpu, &self.next_value),
+            &Buffer::from_slice(&gpu, &self.final_value),
+            &Buffer::from_slice(&gpu, &self.scale),
+            &advantage,
+            &target,
+            &self.params,
+        );
+        (
+            advantage.read(&gpu).expect("advantage"),
+            target.read(&gpu).expect("target"),
+        )
+    }
+
+    fn checked(&self) -> Judged {
+        let poison = self.poison();
+        let buffers: [&[u8]; 8] = [
+            cast_slice(&self.reward),
+            cast_slice(&self.ended),
+            cast_slice(&self.value),
+            cast_slice(&self.next_value),
+            cast_slice(&self.final_value),
+            cast_slice(&self.scale),
+            cast_slice(&poison),
+            cast_slice(&poison),
+        ];
+        let groups = groups(&shader::GAE, self.params.envs as usize);
+        let outcome = checked::run(&shader::GAE, groups, &buffers, &self.params);
+        (outcome.of(6), outcome.of(7))
+    }
+
+    fn real(&self, normalised: f32) -> f64 {
+        f64::from(normalised) * f64::from(self.scale[1]) + f64::from(self.scale[0])
+    }
+
+    /// The n-step returns from `step` on, n = 1, 2, .. to the end of episode or rollout.
+    fn returns(&self, step: usize, env: usize) -> Vec<f64> {
+        let (envs, steps) = (self.params.envs as usize, self.params.steps as usize);
+        let gamma = f64::from(self.params.gamma);
+        let (mut returns, mut sum) = (Vec::new(), 0.0);
+        for (n, later) in (step..steps).enumerate() {
+            sum += gamma.powi(n as i32) * f64::from(self.reward[later * envs + env]);
+            let ended = self.ended[later * envs + env];
+            let after = match ended {
+                end::REACHED => 0.0,
+                end::TRUNCATED => self.real(self.final_value[env]),
+                _ if later + 1 < steps => self.real(self.value[(later + 1) * envs + env]),
+                _ => self.real(self.next_value[env]),
+            };
+            returns.push(sum + gamma.powi(n as i32 + 1) * after);
+            if ended != end::RUNNING {
+                break;
+            }
+        }
+        returns
+    }
+
+    /// Sutton and Barto, Reinforcement Learning, equation 12.3.
+    fn lambda_return(&self, step: usize, env: usize) -> f64 {
+        let lambda = f64::from(self.params.lambda);
+        let returns = self.returns(step, env);
+        let (last, others) = returns.split_last().expect("at least one step");
+        let weighted = others
+            .iter()
+            .enumerate()
+            .map(|(n, r)| lambda.powi(n as i32) * r);
+        (1.0 - lambda) * weighted.sum::<f64>() + lambda.powi(others.len() as i32) * last
+    }
+
+    fn oracle(&self) -> Judged {
+        let envs = self.params.envs as usize;
+        let (mut advantage, mut target) = (self.poison(), self.poison());
+        for at in 0..self.samples() {
+            let judged = self.lambda_return(at / envs, at % envs);
+            advantage[at] = (judged - self.real(self.value[at])) as f32;
+            target[at] = judged as f32;
+        }
+        (advantage, target)
+    }
+
+    /// Everything an advantage of this environment may add up.
+    fn absolute(&self, env: usize) -> f32 {
+        let envs = self.params.envs as usize;
+        let own = |all: &[f32]| {
+            all.iter()
+                .skip(env)
+                .step_by(envs)
+                .map(|v| v.abs())
+                .sum::<f32>()
+        };
+        let values = own(&self.value) + self.next_value[env].abs() + self.final_value[env].abs();
+        let offsets = (self.params.steps + 2) as f32 * self.scale[0].abs();
+        own(&self.reward) + values * self.scale[1] + offsets
+    }
+
+    fn agrees(&self) {
+        let (twin, oracle) = (self.twin(), self.oracle());
+        let (launched, checked) = (self.launch(), self.checked());
+        let bars: Vec<f32> = (0..self.params.envs as usize)
+            .map(|env| 4.0 * f32::EPSILON * self.absolute(env))
+            .collect();
+        let bar = |at: usize| {
+            if at < self.samples() {
+                bars[at % bars.len()]
+            } else {
+                0.0
+            }
+        };
+        for (form, got) in [
+            ("twin", &twin),
+            ("launched", &launched),
+            ("checked", &checked),
+        ] {
+            close(form, &got.0, &oracle.0, bar);
+            close(form, &got.1, &oracle.1, bar);
+        }
+    }
+}
+
+/// Arrivals anywhere and at most one truncation an environment, as rollouts have them.
+fn mixed(step: usize, env: usize) -> u32 {
+    match (step * 31 + env * 17) % 11 {
+        _ if step == env % 13 => end::TRUNCATED,
+        0 => end::REACHED,
+        _ => end::RUNNING,
+    }
+}
+
+#[test]
+fn agrees_with_its_twin_and_the_lambda_return() {
+    for seed in SEEDS {
+        for envs in SIZES {
+            Case::new(envs, 16, seed, mixed).agrees();
+        }
+    }
+}
+
+#[test]
+fn agrees_for_every_kind_of_discount() {
+    for (gamma, lambda) in [
+        (0.99, 0.0),
+        (0.99, 1.0),
+        (1.0, 1.0),
+        (0.0, 0.5),
+        (0.9, 0.5),
+        (0.0, 0.0),
+    ] {
+        for steps in [1, 2, 16, 200] {
+            let mut case = Case::new(65, steps, 5, mixed);
+            (case.params.gamma, case.params.lambda) = (gamma, lambda);
+            case.agrees();
+        }
+    }
+}
+
+#[test]
+fn agrees_where_all_or_none_ends() {
+    for ended in [end::RUNNING, end::REACHED] {
+        Case::new(65, 16, 6, |_, _| ended).agrees();
+    }
+    Case::new(65, 16, 6, |step, _| {
+        if step == 15 {
+            end::TRUNCATED
+        } else {
+            end::RUNNING
+        }
+    })
+    .agrees();
+    Case::new(65, 16, 6, |step, _| {
+        if step == 0 {
+            end::TRUNCATED
+        } else {
+            end::REACHED
+        }
+    })
+    .agrees();
+}

@@ -1,0 +1,159 @@
+//! Oracle: `observe::twin`.
+//! Bar: the pose is a copy; the goal, two products a number, within 4 roundings of the larger.
+
+use crate::checked;
+use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, gpu, same, within_terms};
+use bytemuck::cast_slice;
+use footwork::gpu::kernel::groups;
+use footwork::gpu::{Buffer, shader};
+use footwork::kernels::layout::{GOAL_SCALE, OBSERVATION, end, real};
+use footwork::kernels::observe;
+use footwork::motion::database::PADDED;
+use footwork::motion::features::POSE;
+
+const FRAMES: usize = 500;
+
+struct Case {
+    features: Vec<[f32; PADDED]>,
+    real: Vec<f32>,
+    whole: Vec<u32>,
+    ended: Vec<u32>,
+    params: observe::Params,
+}
+
+impl Case {
+    fn random(envs: usize, seed: u32, only: u32) -> Self {
+        let mut draw = Draw::new(seed);
+        let (real, whole) = draw.state(envs, FRAMES);
+        let offset = draw.below(3) * envs;
+        Case {
+            features: draw.rows(FRAMES, 0.0),
+            real,
+            whole,
+            ended: (0..offset + envs).map(|_| draw.below(3) as u32).collect(),
+            params: observe::Params {
+                envs: envs as u32,
+                offset: offset as u32,
+                only,
+            },
+        }
+    }
+
+    fn envs(&self) -> usize {
+        self.params.envs as usize
+    }
+
+    /// One row too many: it must stay untouched.
+    fn poison(&self) -> Vec<f32> {
+        vec![POISON; (self.envs() + 1) * OBSERVATION]
+    }
+
+    fn twin(&self) -> Vec<f32> {
+        let mut observation = self.poison();
+        observe::twin(
+            &self.features,
+            &self.real,
+            &self.whole,
+            &self.ended,
+            &mut observation,
+            &self.params,
+        );
+        observation
+    }
+
+    fn launch(&self) -> Vec<f32> {
+        let gpu = gpu();
+        let observation = Buffer::from_slice(&gpu, &self.poison());
+        observe::launch(
+            &gpu,
+            &Buffer::from_slice(&gpu, self.features.as_flattened()),
+            &Buffer::from_slice(&gpu, &self.real),
+            &Buffer::from_slice(&gpu, &self.whole),
+            &Buffer::from_slice(&gpu, &self.ended),
+            &observation,
+            &self.params,
+        );
+        observation.read(&gpu).expect("observation")
+    }
+
+    fn checked(&self) -> Vec<f32> {
+        let poison = self.poison();
+        let buffers: [&[u8]; 5] = [
+            cast_slice(&self.features),
+            cast_slice(&self.real),
+            cast_slice(&self.whole),
+            cast_slice(&self.ended),
+            cast_slice(&poison),
+        ];
+        let groups = groups(&shader::OBSERVE, self.envs());
+        checked::run(&shader::OBSERVE, groups, &buffers, &self.params).of(4)
+    }
+
+    /// The larger of a goal's products.
+    fn largest(&self, env: usize) -> f32 {
+        let at = |field: usize| self.real[field * self.envs() + env];
+        let away = (at(real::TARGET_X) - at(real::X)).abs();
+        let away = away.max((at(real::TARGET_Z) - at(real::Z)).abs());
+        away * at(real::HEADING_X).abs().max(at(real::HEADING_Z).abs()) * GOAL_SCALE
+    }
+
+    fn agrees(&self) -> Vec<f32> {
+        let twin = self.twin();
+        for (form, got) in [("launched", self.launch()), ("checked", self.checked())] {
+            let rows = got.chunks(OBSERVATION).zip(twin.chunks(OBSERVATION));
+            for (env, (got, want)) in rows.enumerate() {
+                same(form, &got[..POSE], &want[..POSE]);
+                close(form, &got[POSE..], &want[POSE..], |_| match env {
+                    env if env < self.envs() => within_terms(&[self.largest(env)]),
+                    _ => 0.0,
+                });
+            }
+        }
+        twin
+    }
+}
+
+#[test]
+fn agrees_with_its_twin_on_random_states() {
+    for seed in SEEDS {
+        for envs in SIZES {
+            let seen = Case::random(envs, seed, end::RUNNING).agrees();
+            assert!(seen[..envs * OBSERVATION].iter().all(|&o| o != POISON));
+            assert!(seen[envs * OBSERVATION..].iter().all(|&o| o == POISON));
+        }
+    }
+}
+
+#[test]
+fn writes_only_the_rows_that_ended_as_asked() {
+    for only in [end::REACHED, end::TRUNCATED] {
+        let case = Case::random(130, 1, only);
+        let seen = case.agrees();
+        for (row, &ended) in seen
+            .chunks(OBSERVATION)
+            .zip(&case.ended[case.params.offset as usize..])
+        {
+            assert_eq!(row[0] != POISON, ended == only);
+        }
+    }
+    let mut case = Case::random(65, 1, end::TRUNCATED);
+    case.ended.fill(end::REACHED);
+    assert!(case.agrees().iter().all(|&o| o == POISON));
+    case.ended.fill(end::TRUNCATED);
+    assert!(
+        case.agrees()[..65 * OBSERVATION]
+            .iter()
+            .all(|&o| o != POISON)
+    );
+}
+
+#[test]
+fn survives_degenerate_headings_and_targets() {
+    let mut case = Case::random(65, 2, end::RUNNING);
+    let odd = [0.0, -0.0, 1e-30, 1e30, f32::INFINITY, f32::NAN];
+    for (env, value) in odd.into_iter().enumerate() {
+        case.real[real::HEADING_X * 65 + env] = value;
+        case.real[real::TARGET_Z * 65 + 64 - env] = value;
+    }
+    case.agrees();
+}

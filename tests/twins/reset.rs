@@ -1,0 +1,231 @@
+//! Oracle: `reset::twin`; the distribution it draws is tested here too.
+//! Bar: everything equal bit for bit but the heading, a quotient of a square root: 4 roundings.
+
+use crate::checked;
+use crate::inputs::{Draw, POISON, POISON_WHOLE, SEEDS, SIZES, close, gpu, same, within_terms};
+use bytemuck::cast_slice;
+use footwork::gpu::kernel::groups;
+use footwork::gpu::{Buffer, shader};
+use footwork::kernels::layout::{end, real, whole};
+use footwork::kernels::reset;
+
+struct Case {
+    candidates: Vec<u32>,
+    ended: Vec<u32>,
+    params: reset::Params,
+}
+
+type State = (Vec<f32>, Vec<u32>);
+
+impl Case {
+    fn new(envs: usize, seed: u32, ended: impl Fn(usize) -> u32) -> Self {
+        let mut draw = Draw::new(seed);
+        let candidates: Vec<u32> = (0..=draw.below(5000))
+            .map(|place| 7 * place as u32)
+            .collect();
+        let offset = draw.below(3) * envs;
+        // Ends of other steps would start episodes anew if they were read.
+        let mut ends = vec![end::REACHED; offset + envs + 5];
+        for env in 0..envs {
+            ends[offset + env] = ended(env);
+        }
+        Case {
+            params: reset::Params {
+                envs: envs as u32,
+                candidates: candidates.len() as u32,
+                seed,
+                clock: draw.bits()[0],
+                offset: offset as u32,
+                everywhere: 0,
+                spread: 0,
+                half_side: 5.0,
+                reach: 0.5,
+            },
+            candidates,
+            ended: ends,
+        }
+    }
+
+    fn envs(&self) -> usize {
+        self.params.envs as usize
+    }
+
+    fn poison(&self) -> State {
+        (
+            vec![POISON; real::FIELDS * self.envs()],
+            vec![POISON_WHOLE; whole::FIELDS * self.envs()],
+        )
+    }
+
+    fn twin(&self) -> State {
+        let (mut real, mut whole) = self.poison();
+        reset::twin(
+            &self.candidates,
+            &self.ended,
+            &mut real,
+            &mut whole,
+            &self.params,
+        );
+        (real, whole)
+    }
+
+    fn launch(&self) -> State {
+        let gpu = gpu();
+        let (real, whole) = self.poison();
+        let real = Buffer::from_slice(&gpu, &real);
+        let whole = Buffer::from_slice(&gpu, &whole);
+        reset::launch(
+            &gpu,
+            &Buffer::from_slice(&gpu, &self.candidates),
+            &Buffer::from_slice(&gpu, &self.ended),
+            &real,
+            &whole,
+            &self.params,
+        );
+        (
+            real.read(&gpu).expect("real"),
+            whole.read(&gpu).expect("whole"),
+        )
+    }
+
+    fn checked(&self) -> State {
+        let (real, whole) = self.poison();
+        let buffers: [&[u8]; 4] = [
+            cast_slice(&self.candidates),
+            cast_slice(&self.ended),
+            cast_slice(&real),
+            cast_slice(&whole),
+        ];
+        let groups = groups(&shader::RESET, self.envs());
+        let outcome = checked::run(&shader::RESET, groups, &buffers, &self.params);
+        (outcome.of(2), outcome.of(3))
+    }
+
+    fn agrees(&self) -> State {
+        let twin = self.twin();
+        for (form, got) in [("launched", self.launch()), ("checked", self.checked())] {
+            assert_eq!(got.1, twin.1, "{form}, {:?}", self.params);
+            for field in 0..real::FIELDS {
+                let part = field * self.envs()..(field + 1) * self.envs();
+                let (got, want) = (&got.0[part.clone()], &twin.0[part]);
+                if [real::HEADING_X, real::HEADING_Z].contains(&field) {
+                    close(form, got, want, |_| within_terms(&[1.0]));
+                } else {
+                    same(form, got, want);
+                }
+            }
+        }
+        twin
+    }
+}
+
+#[test]
+fn agrees_with_its_twin_on_random_ends() {
+    for seed in SEEDS {
+        for envs in SIZES {
+            let mut draw = Draw::new(seed);
+            let ends: Vec<u32> = (0..envs).map(|_| draw.below(3) as u32).collect();
+            let (real, whole) = Case::new(envs, seed, |env| ends[env]).agrees();
+            for env in 0..envs {
+                let untouched = ends[env] == end::RUNNING;
+                assert_eq!(real[env] == POISON, untouched);
+                assert_eq!(whole[env] == POISON_WHOLE, untouched);
+            }
+            assert!(real[real::RETURNS * envs..].iter().all(|&r| r == POISON));
+            assert!(
+                whole[whole::EPISODES * envs..]
+                    .iter()
+                    .all(|&w| w == POISON_WHOLE)
+            );
+        }
+    }
+}
+
+#[test]
+fn agrees_at_the_edges_of_its_parameters() {
+    for (seed, clock) in [(0, 0), (u32::MAX, u32::MAX), (1, 12345)] {
+        for (half_side, reach) in [
+            (5.0, 0.5),
+            (0.51, 0.5),
+            (0.3536, 0.5),
+            (0.2, 0.5),
+            (1e4, 0.0),
+        ] {
+            for spread in [0, 1, 2, 200, u32::MAX] {
+                let mut case = Case::new(130, seed, |_| end::RUNNING);
+                case.params.everywhere = 1;
+                (case.params.seed, case.params.clock) = (seed, clock);
+                (case.params.half_side, case.params.reach) = (half_side, reach);
+                case.params.spread = spread;
+                case.agrees();
+            }
+        }
+    }
+}
+
+#[test]
+fn a_square_within_reach_leaves_the_corner() {
+    let mut case = Case::new(65, 3, |_| end::REACHED);
+    (case.params.half_side, case.params.reach) = (0.36, 0.51);
+    let (real, _) = case.agrees();
+    assert_eq!(
+        real[real::TARGET_X * 65..(real::TARGET_Z + 1) * 65],
+        [0.36; 130]
+    );
+}
+
+#[test]
+fn one_candidate_and_none_ended() {
+    let mut case = Case::new(65, 4, |_| end::TRUNCATED);
+    case.candidates = vec![42];
+    case.params.candidates = 1;
+    assert_eq!(case.agrees().1[..65], [42; 65]);
+    let case = Case::new(65, 4, |_| end::RUNNING);
+    assert_eq!(case.agrees(), case.poison());
+}
+
+#[test]
+fn starts_and_targets_are_uniform() {
+    const ENVS: usize = 40_000;
+    let mut case = Case::new(ENVS, 11, |_| end::REACHED);
+    case.candidates = (0..100).collect();
+    (case.params.candidates, case.params.spread) = (100, 200);
+    let (real, whole) = case.twin();
+    let field = |field: usize| {
+        real[field * ENVS..(field + 1) * ENVS]
+            .iter()
+            .map(|&v| f64::from(v))
+    };
+    let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / ENVS as f64;
+    for axis in [real::TARGET_X, real::TARGET_Z] {
+        assert!(field(axis).all(|v| v.abs() <= 5.0));
+        assert!(mean(&mut field(axis)).abs() < 0.07, "deviation 0.0145");
+        // Of [-5, 5] without the disc: 25/3 = 8.33, and a little more.
+        assert!((mean(&mut field(axis).map(|v| v * v)) - 8.39).abs() < 0.2);
+    }
+    let distances = || {
+        field(real::TARGET_X)
+            .zip(field(real::TARGET_Z))
+            .map(|(x, z)| x.hypot(z))
+    };
+    assert!(distances().all(|d| d > 0.5) && distances().any(|d| d < 0.6));
+    for axis in [real::HEADING_X, real::HEADING_Z] {
+        assert!(mean(&mut field(axis)).abs() < 0.02);
+        assert!((mean(&mut field(axis).map(|v| v * v)) - 0.5).abs() < 0.01);
+    }
+    for (field, kinds) in [(whole::FRAME, 100), (whole::AGE, 200)] {
+        let mut counts = vec![0.0f64; kinds];
+        for &value in &whole[field * ENVS..(field + 1) * ENVS] {
+            counts[value as usize] += 1.0;
+        }
+        let expected = ENVS as f64 / kinds as f64;
+        let chi: f64 = counts
+            .iter()
+            .map(|c| (c - expected).powi(2) / expected)
+            .sum();
+        assert!(
+            chi < kinds as f64 + 5.0 * (2.0 * kinds as f64).sqrt(),
+            "chi {chi}"
+        );
+    }
+}

@@ -1,0 +1,312 @@
+//! Whole searches, on the CPU and in both forms on the GPU.
+//! Oracle: plain loops in f64, and `search_exact::twin` for the CPU. Bar: no mismatch beyond
+//! proven ties, see `Oracle::judge`; index and distance of the CPU equal the twin's bit for bit.
+
+use crate::inputs::{Draw, gpu};
+use crate::oracle::Oracle;
+use footwork::gpu::{Buffer, Gpu};
+use footwork::kernels::search_exact;
+use footwork::motion::database::PADDED;
+use footwork::motion::features::{FEATURE, POSE};
+use footwork::motion::normalise::Weights;
+use footwork::search::Index;
+use footwork::train::data;
+use footwork::world::gpu::Search;
+use proptest::prelude::*;
+use std::sync::LazyLock;
+
+type Rows = Vec<[f32; PADDED]>;
+
+/// Queries of each kind on the CPU, on the GPU, and against the slow twin.
+const ON_CPU: usize = 10_000;
+const ON_GPU: usize = 1_000;
+const BY_TWIN: usize = 100;
+
+/// Queries with the rows they are put to and the oracle's answers.
+struct Kind {
+    name: &'static str,
+    data: &'static Data,
+    queries: Rows,
+    best: Vec<usize>,
+}
+
+struct Data {
+    rows: Rows,
+    oracle: Oracle,
+}
+
+impl Data {
+    fn new(rows: Rows) -> Self {
+        Data {
+            oracle: Oracle::new(&rows),
+            rows,
+        }
+    }
+}
+
+static SYNTHETIC: LazyLock<Data> = LazyLock::new(|| {
+    let (database, _) = data::load(None, Weights::PAPER).expect("synthetic motion");
+    Data::new(database.rows())
+});
+
+/// A third of the rows are copies of others.
+static DUPLICATED: LazyLock<Data> = LazyLock::new(|| {
+    let mut draw = Draw::new(1);
+    let mut rows = SYNTHETIC.rows.clone();
+    for _ in 0..rows.len() / 3 {
+        let (from, to) = (draw.below(rows.len()), draw.below(rows.len()));
+        rows[to] = rows[from];
+    }
+    Data::new(rows)
+});
+
+static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
+    let mut draw = Draw::new(2);
+    let rows = &SYNTHETIC.rows;
+    let on_policy = |draw: &mut Draw, i: usize| {
+        let (mut query, future) = (rows[draw.below(rows.len())], rows[draw.below(rows.len())]);
+        // From the future of another row to the wild asking of a new policy.
+        let noise = [0.1, 0.3, 1.0, 3.0][i % 4];
+        for d in POSE..FEATURE {
+            query[d] = future[d] + noise * draw.normal();
+        }
+        query
+    };
+    let far = |draw: &mut Draw, i: usize| draw.row(0.0).map(|v| v * [1e3, 1e5][i % 2]);
+    let copied = |draw: &mut Draw, i: usize| {
+        let noise = [0.0, 1e-6, 1e-2][i % 3];
+        let row = DUPLICATED.rows[draw.below(DUPLICATED.rows.len())];
+        row.map(|value| value + noise * draw.normal())
+    };
+    vec![
+        Kind::new("random", &SYNTHETIC, |_| draw.row(0.0)),
+        Kind::new("on-policy", &SYNTHETIC, |i| on_policy(&mut draw, i)),
+        Kind::new("far-away", &SYNTHETIC, |i| far(&mut draw, i)),
+        Kind::new("duplicated", &DUPLICATED, |i| copied(&mut draw, i)),
+    ]
+});
+
+impl Kind {
+    fn new(
+        name: &'static str,
+        data: &'static Data,
+        query: impl FnMut(usize) -> [f32; PADDED],
+    ) -> Self {
+        let mut queries: Rows = (0..ON_CPU).map(query).collect();
+        for query in &mut queries {
+            query[FEATURE] = 1.0;
+        }
+        Kind {
+            name,
+            best: data.oracle.nearest_all(&queries),
+            data,
+            queries,
+        }
+    }
+
+    /// Judges answers to the first queries, and counts those that are ties.
+    fn judge(&self, form: &str, found: &[u32]) {
+        let mut ties = 0;
+        for (at, &found) in found.iter().enumerate() {
+            let what = format!("{form}, {} query {at}", self.name);
+            let (query, best) = (&self.queries[at], self.best[at]);
+            self.data.oracle.judge(&what, query, found, best);
+            ties += usize::from(found as usize != best);
+        }
+        println!("{form}, {}: {ties} ties of {}", self.name, found.len());
+    }
+}
+
+/// Both forms of the GPU's search: for software adapters and for real ones.
+fn forms() -> [(&'static str, Gpu); 2] {
+    let mut real = gpu();
+    real.software = false;
+    [("search_wide", gpu()), ("search_tile", real)]
+}
+
+fn on_gpu(gpu: &Gpu, rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) -> Vec<u32> {
+    let search = Search::new(gpu, rows, queries.len());
+    let queries = Buffer::from_slice(gpu, queries.as_flattened());
+    search.nearest(gpu, &queries).read(gpu).expect("matches")
+}
+
+fn by_twin(rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) -> Vec<u32> {
+    let mut found = vec![u32::MAX; queries.len()];
+    let params = search_exact::Params {
+        count: queries.len() as u32,
+        candidates: rows.len() as u32,
+        block: 64,
+        longest: 0.0,
+    };
+    search_exact::twin(rows, queries, &[], &mut found, &params);
+    found
+}
+
+fn on_cpu(index: &Index, queries: &[[f32; PADDED]]) -> Vec<u32> {
+    let mut found = vec![u32::MAX; queries.len()];
+    index.nearest_all(queries, &mut found);
+    found
+}
+
+/// The index gives the twin's rows and distances, bit for bit.
+#[track_caller]
+fn same_as_twin(index: &Index, rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) {
+    for (query, twin) in queries.iter().zip(by_twin(rows, queries)) {
+        let found = index.nearest(query);
+        let distance = search_exact::squared(&rows[twin as usize], query);
+        assert_eq!(
+            (found.index, found.distance.to_bits()),
+            (twin, distance.to_bits())
+        );
+    }
+}
+
+#[test]
+fn the_cpu_finds_what_the_oracle_finds() {
+    let synthetic = Index::build(&SYNTHETIC.rows);
+    let duplicated = Index::build(&DUPLICATED.rows);
+    for kind in &*KINDS {
+        let index = match kind.name {
+            "duplicated" => &duplicated,
+            _ => &synthetic,
+        };
+        kind.judge("cpu", &on_cpu(index, &kind.queries));
+        same_as_twin(index, &kind.data.rows, &kind.queries[..BY_TWIN]);
+    }
+}
+
+#[test]
+fn both_forms_of_the_gpu_find_what_the_oracle_finds() {
+    for (form, gpu) in forms() {
+        for kind in &*KINDS {
+            kind.judge(
+                form,
+                &on_gpu(&gpu, &kind.data.rows, &kind.queries[..ON_GPU]),
+            );
+        }
+    }
+}
+
+/// Around the sizes of leaves, groups, blocks and of lavapipe's count of loop iterations.
+const COUNTS: [usize; 15] = [
+    1, 2, 15, 16, 17, 63, 64, 65, 255, 256, 257, 4097, 65_535, 65_536, 70_001,
+];
+
+#[test]
+fn finds_a_winner_in_the_first_and_in_the_last_row() {
+    let mut draw = Draw::new(3);
+    for count in COUNTS {
+        let mut rows: Rows = (0..count)
+            .map(|i| SYNTHETIC.rows[i % SYNTHETIC.rows.len()])
+            .collect();
+        let mut queries = draw.rows(3, 1.0);
+        for (place, query, away) in [(0, 0, 20.0), (count - 1, 1, -20.0)] {
+            rows[place] = queries[query].map(|value| value + away);
+            rows[place][FEATURE] = 0.0;
+            queries[query] = rows[place].map(|value| value + 1e-3);
+            queries[query][FEATURE] = 1.0;
+        }
+        let (oracle, index) = (Oracle::new(&rows), Index::build(&rows));
+        let best = oracle.nearest_all(&queries);
+        assert_eq!(best[1], count - 1);
+        assert!(count == 1 || best[0] == 0);
+        same_as_twin(&index, &rows, &queries);
+        for (form, gpu) in forms() {
+            let found = on_gpu(&gpu, &rows, &queries);
+            assert_eq!(
+                found[..2],
+                [best[0] as u32, best[1] as u32],
+                "{form}, {count} rows"
+            );
+            oracle.judge(form, &queries[2], found[2], best[2]);
+        }
+    }
+}
+
+#[test]
+fn of_equal_rows_the_first_wins() {
+    for count in [1, 16, 17, 257, 4097, 70_001] {
+        let rows = vec![SYNTHETIC.rows[7]; count];
+        let mut queries = Draw::new(4).rows(3, 1.0);
+        queries[0][..FEATURE].copy_from_slice(&rows[0][..FEATURE]);
+        queries[2] = queries[2].map(|value| value * 1e5);
+        queries[2][FEATURE] = 1.0;
+        assert_eq!(on_cpu(&Index::build(&rows), &queries), [0; 3]);
+        for (form, gpu) in forms() {
+            assert_eq!(
+                on_gpu(&gpu, &rows, &queries),
+                [0; 3],
+                "{form}, {count} rows"
+            );
+        }
+    }
+}
+
+/// Rows and queries huddled together far from the origin: block scores cancel almost wholly, and
+/// only the margin for their rounding keeps the right block in question.
+#[test]
+fn finds_the_nearest_where_scores_cancel() {
+    let mut draw = Draw::new(5);
+    let centre = draw.row(0.0).map(|value| 1e3 * value);
+    let mut huddle = |count: usize, last: f32| -> Rows {
+        let mut rows = draw.rows(count, 0.0);
+        for row in &mut rows {
+            *row = std::array::from_fn(|i| centre[i] + 0.1 * row[i]);
+            row[FEATURE] = last;
+        }
+        rows
+    };
+    let (rows, queries) = (huddle(5000, 0.0), huddle(257, 1.0));
+    let oracle = Oracle::new(&rows);
+    let best = oracle.nearest_all(&queries);
+    same_as_twin(&Index::build(&rows), &rows, &queries);
+    for (form, gpu) in forms() {
+        let found = on_gpu(&gpu, &rows, &queries);
+        for ((query, found), &best) in queries.iter().zip(found).zip(&best) {
+            oracle.judge(form, query, found, best);
+        }
+    }
+}
+
+/// A diverged policy asks for what is not a number: the answer must still be a row.
+#[test]
+fn a_query_that_is_no_number_finds_a_row() {
+    let rows = Draw::new(9).rows(300, 0.0);
+    for bad in [f32::NAN, f32::INFINITY, f32::MAX] {
+        let query = [bad; PADDED];
+        let found = Index::build(&rows).nearest(&query).index;
+        assert_eq!(found, 0, "{bad}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Any weights: scales from 1e-6 to 1e6 a dimension, some of them 0; some rows twice.
+    #[test]
+    fn the_index_equals_the_twin_for_any_weights(
+        seed: u32,
+        count in 1usize..900,
+        exponents in prop::collection::vec(-6i32..=6, FEATURE),
+        flat in prop::collection::vec(prop::bool::weighted(0.2), FEATURE),
+        copies in 0usize..200,
+    ) {
+        let mut draw = Draw::new(seed);
+        let weigh = |row: [f32; PADDED]| -> [f32; PADDED] {
+            std::array::from_fn(|i| match i {
+                FEATURE => row[i],
+                i if flat[i] => 0.0,
+                i => row[i] * 10f32.powi(exponents[i]),
+            })
+        };
+        let mut rows: Rows = draw.rows(count, 0.0).into_iter().map(weigh).collect();
+        for _ in 0..copies {
+            let (from, to) = (draw.below(count), draw.below(count));
+            rows[to] = rows[from];
+        }
+        let mut queries: Rows = draw.rows(8, 1.0).into_iter().map(weigh).collect();
+        queries.extend((0..4).map(|_| rows[draw.below(count)]));
+        queries.extend(draw.rows(2, 1.0));
+        same_as_twin(&Index::build(&rows), &rows, &queries);
+    }
+}

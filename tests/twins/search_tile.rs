@@ -1,0 +1,14 @@
+//! Oracle, bar and inputs: those of `search_wide`.
+
+use crate::search_wide::{Case, SHAPES};
+
+#[test]
+fn agrees_with_its_twin_and_the_oracle() {
+    for (seed, shape) in (100..).zip(SHAPES) {
+        for far in [1.0, 1e4] {
+            let case = Case::new(shape, far, seed);
+            case.twin_agrees();
+            case.shader_agrees(true);
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! Oracle: `step::twin` (and the paper's formulas in `paper`).
+//! Bar: frames, ages, counts and ends equal; positions and headings within 4 roundings of their
+//! terms, as a compiler may fuse a product into a sum; rewards within 8 + 4 d units in the last
+//! place at distance d, twice what WGSL grants exp(-d), and the roundings of the distance.
+
+use crate::checked;
+use crate::inputs::{
+    Draw, POISON, POISON_WHOLE, SEEDS, SIZES, close, gpu, places_but, same, within_terms,
+};
+use bytemuck::cast_slice;
+use footwork::gpu::kernel::groups;
+use footwork::gpu::{Buffer, shader};
+use footwork::kernels::layout::{end, real, whole};
+use footwork::kernels::step;
+use footwork::motion::database::RootMotion;
+
+struct Case {
+    candidates: Vec<u32>,
+    matched: Vec<u32>,
+    motion: Vec<RootMotion>,
+    state: State,
+    params: step::Params,
+}
+
+#[derive(Clone)]
+struct State {
+    real: Vec<f32>,
+    whole: Vec<u32>,
+    reward: Vec<f32>,
+    ended: Vec<u32>,
+}
+
+impl Case {
+    fn random(envs: usize, seed: u32) -> Self {
+        let mut draw = Draw::new(seed);
+        let candidates: Vec<u32> = (0..300).map(|place| 3 * place + 1).collect();
+        let (real, whole) = draw.state(envs, 1000);
+        let offset = draw.below(3) * envs;
+        let places = offset + envs + 5;
+        Case {
+            matched: (0..envs).map(|_| draw.below(300) as u32).collect(),
+            motion: (0..300).map(|_| draw.motion()).collect(),
+            state: State {
+                real,
+                whole,
+                reward: vec![POISON; places],
+                ended: vec![POISON_WHOLE; places],
+            },
+            candidates,
+            params: step::Params {
+                envs: envs as u32,
+                offset: offset as u32,
+                max_steps: 200,
+                reach: 0.5,
+                bonus: 1000.0,
+            },
+        }
+    }
+
+    fn envs(&self) -> usize {
+        self.params.envs as usize
+    }
+
+    fn set(&mut self, env: usize, values: &[(usize, f32)]) {
+        let envs = self.envs();
+        for &(field, value) in values {
+            self.state.real[field * envs + env] = value;
+        }
+    }
+
+    fn twin(&self) -> State {
+        let mut state = self.state.clone();
+        step::twin(
+            &self.candidates,
+            &self.matched,
+            &self.motion,
+            &mut state.real,
+            &mut state.whole,
+            &mut state.reward,
+            &mut state.ended,
+            &self.params,
+        );
+        state
+    }
+
+    fn launch(&self) -> State {
+        let gpu = gpu();
+        let real = Buffer::from_slice(&gpu, &self.state.real);
+        let whole = Buffer::from_slice(&gpu, &self.state.whole);
+        let reward = Buffer::from_slice(&gpu, &self.state.reward);
+        let ended = Buffer::from_slice(&gpu, &self.state.ended);
+        step::launch(
+            &gpu,
+            &Buffer::from_slice(&gpu, &self.candidates),
+            &Buffer::from_slice(&gpu, &self.matched),
+            &Buffer::from_slice(&gpu, cast_slice(&self.motion)),
+            &real,
+            &whole,
+            &reward,
+            &ended,
+            &self.params,
+        );
+        State {
+            real: real.read(&gpu).expect("real"),
+            whole: whole.read(&gpu).expect("whole"),
+            reward: reward.read(&gpu).expect("reward"),
+            ended: ended.read(&gpu).expect("ended"),
+        }
+    }
+
+    fn checked(&self) -> State {
+        let buffers: [&[u8]; 7] = [
+            cast_slice(&self.candidates),
+            cast_slice(&self.matched),
+            cast_slice(&self.motion),
+            cast_slice(&self.state.real),
+            cast_slice(&self.state.whole),
+            cast_slice(&self.state.reward),
+            cast_slice(&self.state.ended),
+        ];
+        let groups = groups(&shader::STEP, self.envs());
+        let outcome = checked::run(&shader::STEP, groups, &buffers, &self.params);
+        State {
+            real: outcome.of(3),
+            whole: outcome.of(4),
+            reward: outcome.of(5),
+            ended: outcome.of(6),
+        }
+    }
+
+    fn agrees(&self) -> State {
+        let twin = self.twin();
+        self.compare("launched", &self.launch(), &twin);
+        self.compare("checked", &self.checked(), &twin);
+        twin
+    }
+
+    fn compare(&self, form: &str, got: &State, want: &State) {
+        let envs = self.envs();
+        assert_eq!(got.ended, want.ended, "{form}: ended");
+        assert_eq!(got.whole, want.whole, "{form}: whole");
+        // A place is the sum of the old place and two products.
+        let place = |i: usize| within_terms(&[self.state.real[i], want.real[i], 2.0]);
+        let fields = |field: usize| field * envs..(field + 1) * envs;
+        for field in [real::X, real::Z] {
+            let part = fields(field);
+            close(
+                form,
+                &got.real[part.clone()],
+                &want.real[part.clone()],
+                |i| place(part.start + i),
+            );
+        }
+        for field in [real::HEADING_X, real::HEADING_Z] {
+            let part = fields(field);
+            close(form, &got.real[part.clone()], &want.real[part], |_| {
+                within_terms(&[1.0])
+            });
+        }
+        for field in [real::TARGET_X, real::TARGET_Z, real::TRAVELLED] {
+            same(form, &got.real[fields(field)], &want.real[fields(field)]);
+        }
+        let offset = self.params.offset as usize;
+        let gained = |i: usize| match i.checked_sub(offset) {
+            Some(env) if env < envs => {
+                let at = |field: usize| want.real[field * envs + env];
+                let (x, z) = (
+                    at(real::TARGET_X) - at(real::X),
+                    at(real::TARGET_Z) - at(real::Z),
+                );
+                let blur = 4.0 * place(env).max(place(envs + env));
+                want.reward[i] * ((8.0 + 4.0 * x.hypot(z)) * f32::EPSILON + blur)
+            }
+            _ => 0.0,
+        };
+        close(form, &got.reward, &want.reward, |i| {
+            gained(i) + f32::MIN_POSITIVE
+        });
+        for field in [real::RETURN, real::RETURNS] {
+            let part = fields(field);
+            close(
+                form,
+                &got.real[part.clone()],
+                &want.real[part.clone()],
+                |env| {
+                    let terms = [
+                        self.state.real[part.start + env],
+                        want.real[part.start + env],
+                    ];
+                    gained(offset + env) + within_terms(&terms)
+                },
+            );
+        }
+        let written = self.params.offset as usize..self.params.offset as usize + envs;
+        assert!(
+            places_but(&written, &got.reward).all(|&r| r == POISON),
+            "{form}"
+        );
+        assert!(
+            places_but(&written, &got.ended).all(|&e| e == POISON_WHOLE),
+            "{form}"
+        );
+    }
+}
+
+#[test]
+fn agrees_with_its_twin_on_random_states() {
+    for seed in SEEDS {
+        for envs in SIZES {
+            Case::random(envs, seed).agrees();
+        }
+    }
+}
+
+/// A character that stands still at the origin, so that distances are exact.
+fn standing(envs: usize) -> Case {
+    let mut case = Case::random(envs, 5);
+    case.motion.fill(RootMotion {
+        moved: [0.0; 2],
+        turned: [0.0, 1.0],
+        length: 0.0,
+    });
+    for env in 0..envs {
+        case.set(env, &[(real::X, 0.0), (real::Z, 0.0), (real::RETURN, 0.0)]);
+        case.set(env, &[(real::HEADING_X, 0.0), (real::HEADING_Z, 1.0)]);
+        case.set(env, &[(real::TARGET_X, 3.0), (real::TARGET_Z, -4.0)]);
+    }
+    case
+}
+
+#[test]
+fn ends_exactly_at_reach_and_at_the_last_step() {
+    let mut case = standing(70);
+    let further = 0.5f32.next_up();
+    let places = [
+        [0.5, 0.0],
+        [0.0, -0.5],
+        [0.0, further],
+        [-further, 0.0],
+        [3.0, 4.0],
+    ];
+    let ages = [0, 198, 199, 200, u32::MAX - 1];
+    for env in 0..25 {
+        let [x, z]: [f32; 2] = places[env % 5];
+        case.set(env, &[(real::TARGET_X, x), (real::TARGET_Z, z)]);
+        case.state.whole[whole::AGE * 70 + env] = ages[env / 5];
+    }
+    let after = case.agrees();
+    for env in 0..25 {
+        // Arrival counts first, also at the last step.
+        let expected = match (env % 5, env / 5) {
+            (0 | 1, _) => end::REACHED,
+            (_, 2..) => end::TRUNCATED,
+            _ => end::RUNNING,
+        };
+        assert_eq!(
+            after.ended[case.params.offset as usize + env],
+            expected,
+            "{env}"
+        );
+    }
+}
+
+#[test]
+fn survives_degenerate_headings() {
+    let mut case = Case::random(65, 9);
+    let headings = [
+        [3.0, -4.0],
+        [1e-3, 0.0],
+        [0.0, 1e-12],
+        [0.0, 0.0],
+        [1e9, 1e9],
+        [f32::NAN, 1.0],
+    ];
+    for (env, [x, z]) in headings.into_iter().enumerate() {
+        case.set(env, &[(real::HEADING_X, x), (real::HEADING_Z, z)]);
+    }
+    // Huge and lost headings move the character as far: only the heading is compared there.
+    for env in [4, 5] {
+        case.set(env, &[(real::TARGET_X, 1e12), (real::TARGET_Z, 0.0)]);
+        case.motion[case.matched[env] as usize].moved = [0.0; 2];
+    }
+    case.agrees();
+}
+
+#[test]
+fn all_end_or_none_ends() {
+    let mut case = standing(130);
+    assert!(case.agrees().ended[case.params.offset as usize..][..130] != [end::REACHED; 130]);
+    case.params.reach = 5.0;
+    assert_eq!(
+        case.agrees().ended[case.params.offset as usize..][..130],
+        [end::REACHED; 130]
+    );
+    (case.params.reach, case.params.max_steps) = (4.9, 0);
+    assert_eq!(
+        case.agrees().ended[case.params.offset as usize..][..130],
+        [end::TRUNCATED; 130]
+    );
+    case.params.max_steps = u32::MAX;
+    assert_eq!(
+        case.agrees().ended[case.params.offset as usize..][..130],
+        [end::RUNNING; 130]
+    );
+}

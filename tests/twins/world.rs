@@ -1,0 +1,240 @@
+//! A thousand steps of 256 worlds under the same actions, on the GPU against the CPU.
+//! Oracle: `CpuWorld`, which runs the twins.
+//! Bar: frames, ages and counts equal; headings within a rounding or two a step of the episode,
+//! places within that angle times the path walked. An environment may go another way only after
+//! a proven tie: an arrival decided within that bar of reach, or two rows as near in f64 as f32
+//! can tell.
+
+use crate::inputs::{Draw, gpu};
+use crate::oracle::Oracle;
+use crate::paper::DATABASE;
+use burn::tensor::Device as Tensors;
+use footwork::gpu::Device;
+use footwork::kernels::layout::{OBSERVATION, real, whole};
+use footwork::motion::features::{FEATURE, PLAYED, POSE, TRAJECTORY};
+use footwork::tensors::{read, upload, vector};
+use footwork::train::evaluate::{Controller, Scripted};
+use footwork::world::{Plane, Snapshot, World, open};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+const ENVS: usize = 256;
+const STEPS: usize = 1000;
+const HORIZON: usize = 16;
+
+/// The two batches of worlds, and what differs.
+struct Pair {
+    cpu: Box<dyn World>,
+    gpu: Box<dyn World>,
+    tensors: [Tensors; 2],
+    oracle: Oracle,
+    /// Environments that went another way after a tie.
+    parted: HashSet<usize>,
+    /// The largest difference of places seen, m.
+    most: f32,
+}
+
+impl Pair {
+    fn new() -> Self {
+        let database = Arc::new(DATABASE.clone());
+        let devices = [Device::Cpu, Device::from(gpu())];
+        let world = |device| open(device, &database, Plane::default(), ENVS, HORIZON, 42);
+        Pair {
+            cpu: world(&devices[0]),
+            gpu: world(&devices[1]),
+            tensors: devices.map(|device| device.tensors()),
+            oracle: Oracle::new(&database.rows()),
+            parted: HashSet::new(),
+            most: 0.0,
+        }
+    }
+
+    fn snapshots(&self) -> [Snapshot; 2] {
+        [&self.cpu, &self.gpu].map(|world| world.snapshot().expect("snapshot"))
+    }
+
+    fn step(&mut self, action: &[f32]) {
+        let [before, _] = self.snapshots();
+        for (world, device) in [&mut self.cpu, &mut self.gpu]
+            .into_iter()
+            .zip(&self.tensors)
+        {
+            world.step(upload(action.to_vec(), [ENVS, TRAJECTORY], device));
+        }
+        let [cpu, gpu] = self.snapshots();
+        assert_eq!(cpu.clock, gpu.clock);
+        for env in 0..ENVS {
+            if self.parted.contains(&env) {
+                continue;
+            }
+            let count = |of: &Snapshot| [0, 1, 2, 3, 4].map(|field| of.whole[field * ENVS + env]);
+            if count(&cpu) == count(&gpu) {
+                self.close(&cpu, &gpu, env);
+            } else {
+                let action = &action[env * TRAJECTORY..][..TRAJECTORY];
+                self.prove_tie(&before, [&cpu, &gpu], env, action);
+                self.parted.insert(env);
+            }
+        }
+    }
+
+    fn close(&mut self, cpu: &Snapshot, gpu: &Snapshot, env: usize) {
+        let bar = Bar::of(cpu, env);
+        for field in 0..real::FIELDS {
+            let [want, got] = [cpu, gpu].map(|of| of.real[field * ENVS + env]);
+            let allowed = match field {
+                real::X | real::Z => bar.place,
+                real::HEADING_X | real::HEADING_Z => bar.heading,
+                // A reward is as wrong as the distance, and each sum rounds.
+                real::RETURN | real::RETURNS => 200.0 * (bar.place + want.abs() * f32::EPSILON),
+                _ => 0.0,
+            };
+            let what = format!("step {}, environment {env}, field {field}", cpu.clock);
+            assert!(
+                (got - want).abs() <= allowed,
+                "{what}: {got} instead of {want} +- {allowed}"
+            );
+            if [real::X, real::Z].contains(&field) {
+                self.most = self.most.max((got - want).abs());
+            }
+        }
+    }
+
+    /// Fails unless the two ways of an environment are equally right.
+    fn prove_tie(&self, before: &Snapshot, after: [&Snapshot; 2], env: usize, action: &[f32]) {
+        let [cpu, gpu] = after.map(|of| of.whole[whole::AGE * ENVS + env]);
+        if cpu != gpu {
+            let on = if cpu == 0 { after[1] } else { after[0] };
+            assert_eq!(cpu.min(gpu), 0, "environment {env}: ages {cpu} and {gpu}");
+            let at = |field: usize| on.real[field * ENVS + env];
+            let (x, z) = (
+                at(real::TARGET_X) - at(real::X),
+                at(real::TARGET_Z) - at(real::Z),
+            );
+            let beyond = (x.hypot(z) - Plane::default().reach).abs();
+            assert!(
+                beyond <= 2.0 * Bar::of(on, env).place,
+                "environment {env}: {beyond} m"
+            );
+            return;
+        }
+        let mut query = DATABASE.features[before.whole[whole::FRAME * ENVS + env] as usize];
+        query[POSE..FEATURE].copy_from_slice(action);
+        let best = self.oracle.nearest_all(&[query])[0];
+        for of in after {
+            let frame = of.whole[whole::FRAME * ENVS + env] - PLAYED as u32;
+            let found = DATABASE
+                .candidates
+                .binary_search(&frame)
+                .expect("a candidate");
+            self.oracle
+                .judge("a parted environment", &query, found as u32, best);
+        }
+    }
+
+    /// Straight to the target at a brisk pace, with a new policy's noise.
+    fn actions(&mut self, draw: &mut Draw) -> Vec<f32> {
+        let seen = read(self.cpu.observe()).expect("observation");
+        let scripted = Scripted {
+            database: &DATABASE,
+            speed: 2.0,
+        };
+        let mut action = scripted.act(&seen).expect("action");
+        for value in &mut action {
+            *value += 0.5 * draw.normal();
+        }
+        action
+    }
+
+    fn compare_observations(&mut self) {
+        let [cpu, gpu] =
+            [&mut self.cpu, &mut self.gpu].map(|w| read(w.observe()).expect("observation"));
+        let [state, _] = self.snapshots();
+        for env in (0..ENVS).filter(|env| !self.parted.contains(env)) {
+            let part = env * OBSERVATION..(env + 1) * OBSERVATION;
+            let (want, got) = (&cpu[part.clone()], &gpu[part]);
+            let bar = Bar::of(&state, env);
+            assert_eq!(want[..POSE], got[..POSE]);
+            for (want, got) in want[POSE..].iter().zip(&got[POSE..]) {
+                let allowed = bar.place + bar.heading * 2.0 * want.abs().max(1.0);
+                assert!((want - got).abs() <= allowed, "environment {env}");
+            }
+        }
+    }
+
+    /// Each world's tally is the sum of what its own environments counted.
+    fn compare_tallies(&mut self) {
+        let snapshots = self.snapshots();
+        for (world, before) in [&mut self.cpu, &mut self.gpu].into_iter().zip(snapshots) {
+            let sums = read(world.tally()).expect("sums");
+            let fields = [whole::EPISODES, whole::SUCCESSES, whole::LENGTHS];
+            for (sum, field) in sums.iter().zip(fields) {
+                let counted: u32 = before.whole[field * ENVS..(field + 1) * ENVS].iter().sum();
+                assert_eq!(*sum, counted as f32);
+            }
+            let returns = &before.real[real::RETURNS * ENVS..];
+            let sum: f64 = returns.iter().map(|&r| f64::from(r)).sum();
+            assert!((f64::from(sums[3]) - sum).abs() <= 256.0 * f64::from(f32::EPSILON) * sum);
+        }
+    }
+}
+
+/// What rounding may have changed so far in an environment's episode.
+struct Bar {
+    heading: f32,
+    place: f32,
+}
+
+impl Bar {
+    fn of(state: &Snapshot, env: usize) -> Self {
+        let age = state.whole[whole::AGE * ENVS + env] as f32;
+        let path = state.real[real::TRAVELLED * ENVS + env];
+        let heading = 2.0 * f32::EPSILON * (2.0 + age);
+        Bar {
+            heading,
+            place: heading * (1.0 + path),
+        }
+    }
+}
+
+#[test]
+fn a_thousand_steps_agree_on_gpu_and_cpu() {
+    let mut pair = Pair::new();
+    let mut draw = Draw::new(1);
+    for step in 0..STEPS {
+        let action = pair.actions(&mut draw);
+        pair.step(&action);
+        if step % 50 == 0 {
+            pair.compare_observations();
+            pair.compare_tallies();
+        }
+    }
+    println!(
+        "{} parted, places within {:e} m",
+        pair.parted.len(),
+        pair.most
+    );
+    assert!(pair.parted.len() <= ENVS / 50, "{} ties", pair.parted.len());
+}
+
+#[test]
+fn the_same_actions_are_drawn_on_gpu_and_cpu() {
+    let mut pair = Pair::new();
+    let mut draw = Draw::new(2);
+    let (mean, log_std) = (draw.normals(ENVS * TRAJECTORY), draw.normals(TRAJECTORY));
+    let [want, got] = [0, 1].map(|at| {
+        let (world, device) = ([&mut pair.cpu, &mut pair.gpu], &pair.tensors[at]);
+        let mean = upload(mean.clone(), [ENVS, TRAJECTORY], device);
+        let [cpu, gpu] = world;
+        let world = if at == 0 { cpu } else { gpu };
+        let (action, log_prob) = world.act(mean, vector(&log_std, device));
+        (
+            read(action).expect("action"),
+            read(log_prob).expect("log_prob"),
+        )
+    });
+    for (want, got) in [(want.0, got.0), (want.1, got.1)] {
+        let fits = |(w, g): (&f32, &f32)| (w - g).abs() <= 1e-5 * w.abs().max(1.0);
+        assert!(want.iter().zip(&got).all(fits));
+    }
+}
