@@ -34,7 +34,7 @@ pub struct Plane {
     /// Stop after this many environment steps [default: 1000000]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     steps: Option<u64>,
-    /// Stop after this time, like 90s, 5m or 1h30m
+    /// Stop after this time, like 90s, 5m or 1h30m; looked at after each update
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, allow_hyphen_values = true)]
     max_time: Option<std::time::Duration>,
     /// Stop at this share of successful evaluation episodes, like 0.99

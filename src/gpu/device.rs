@@ -1,7 +1,7 @@
 //! Which adapter or processor runs the program.
 
 use super::tensor;
-use burn::tensor::wgpu::{MemoryConfiguration, WgpuInitError};
+use burn::tensor::wgpu::{MemoryConfiguration, WgpuBackend, WgpuInitError};
 use burn::tensor::{Device as TensorDevice, DeviceKind};
 use clap::ValueEnum;
 use cubecl::client::Client;
@@ -27,11 +27,10 @@ pub enum Choice {
 /// No adapter of the asked-for kind.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "no {wanted} found: {why}\n  Install a Vulkan, Metal or DX12 driver (Mesa's `mesa-vulkan-drivers` brings lavapipe), or use `--device cpu`"
+    "no {wanted} found: install a Vulkan, Metal or DX12 driver (Mesa's `mesa-vulkan-drivers` brings lavapipe), or use `--device cpu`"
 )]
 pub struct NoAdapter {
     wanted: &'static str,
-    why: String,
 }
 
 /// An opened device.
@@ -109,42 +108,38 @@ impl Gpu {
             DeviceKind::IntegratedGpu(0),
             DeviceKind::VirtualGpu(0),
         ];
-        let mut why = String::new();
-        for kind in kinds {
-            match Self::shared(kind, false) {
-                Ok(gpu) => return Ok(gpu),
-                Err(error) => why = error,
-            }
-        }
-        Err(NoAdapter { wanted: "GPU", why })
+        let open = |kind| Self::shared(kind, WgpuBackend::Auto).ok();
+        let first = kinds.into_iter().find_map(open);
+        first.ok_or(NoAdapter { wanted: "GPU" })
     }
 
-    /// Mesa's software rasteriser.
+    /// Mesa's software rasteriser. On Vulkan only: through OpenGL it is ten times slower.
     pub fn lavapipe() -> Result<Self, NoAdapter> {
-        Self::shared(DeviceKind::Cpu, true).map_err(|why| NoAdapter {
+        Self::shared(DeviceKind::Cpu, WgpuBackend::Vulkan).map_err(|_| NoAdapter {
             wanted: "software Vulkan adapter (lavapipe)",
-            why,
         })
     }
 
     /// burn's runtime can be set up once a process and kind: later calls share the first one's.
-    fn shared(kind: DeviceKind, software: bool) -> Result<Self, String> {
+    fn shared(kind: DeviceKind, api: WgpuBackend) -> Result<Self, WgpuInitError> {
         static OPENED: Mutex<Option<HashMap<DeviceKind, Gpu>>> = Mutex::new(None);
         let mut opened = OPENED.lock().unwrap_or_else(PoisonError::into_inner);
         let opened = opened.get_or_insert_default();
         if let Some(gpu) = opened.get(&kind) {
             return Ok(gpu.clone());
         }
-        let gpu = Self::new(kind.clone(), software).map_err(|error| error.to_string())?;
+        let gpu = Self::new(kind.clone(), api)?;
         opened.insert(kind, gpu.clone());
         Ok(gpu)
     }
 
-    fn new(kind: DeviceKind, software: bool) -> Result<Self, WgpuInitError> {
+    fn new(kind: DeviceKind, api: WgpuBackend) -> Result<Self, WgpuInitError> {
+        let software = kind == DeviceKind::Cpu;
         // One page an allocation: a dispatch may then bind two buffers, one read-only and one
         // read-write, without both being slices of the same page, which wgpu refuses.
         let (tensors, setup) = TensorDevice::wgpu_options()
             .device_kind(kind)
+            .graphics_api(api)
             .memory_config(MemoryConfiguration::ExclusivePages)
             .init_with_setup()?;
         let (client, cube) = tensor::client_of(&tensors);

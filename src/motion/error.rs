@@ -44,7 +44,7 @@ pub enum Error {
 
     #[error(
         "unknown skeleton: no joint found for {missing}; its joints are {joints}. Name them in a \
-         file, a line like `left_foot = \"joint name\"` for each, and import with \
+         roles file, a line like `left_foot = \"joint name\"` for each, and import with \
          `footwork data import --roles FILE`"
     )]
     MissingRoles { missing: String, joints: String },

@@ -210,9 +210,9 @@ fn check_weights(weights: &Weights) -> Result<(), ConfigError> {
 fn check_ppo(ppo: &Ppo) -> Result<(), ConfigError> {
     within("ppo.envs", ppo.envs, 1, 1 << 20)?;
     within("ppo.horizon", ppo.horizon, 1, 10_000)?;
-    within("ppo.envs times ppo.horizon", ppo.batch(), 1, 1 << 26)?;
+    within("ppo.envs times ppo.horizon", ppo.batch(), 1, 1 << 23)?;
     within("ppo.epochs", ppo.epochs, 1, 1000)?;
-    within("ppo.minibatch", ppo.minibatch, 1, 1 << 26)?;
+    within("ppo.minibatch", ppo.minibatch, 1, 1 << 23)?;
     within("ppo.learning_rate", ppo.learning_rate, 1e-9, 1.0)?;
     within("ppo.final_rate", ppo.final_rate, 0.0, 1.0)?;
     within("ppo.target_kl", ppo.target_kl, 0.0, 100.0)?;
@@ -241,32 +241,31 @@ fn overlay(
 ) -> Result<(), Mistake> {
     for (key, value) in changes {
         let full = format!("{within}{key}");
-        let Some(known) = table.get_mut(&key) else {
-            return Err(Mistake {
-                problem: format!("unknown key `{full}`{}", hint(&key, names)),
-                key: full,
-            });
-        };
-        match (known, value) {
-            (toml::Value::Table(inner), toml::Value::Table(changes)) => {
+        let put = match (table.get_mut(&key), value) {
+            (None, _) => Err(format!("unknown key `{full}`{}", hint(&key, names))),
+            (Some(toml::Value::Table(inner)), toml::Value::Table(changes)) => {
                 overlay(inner, changes, &format!("{full}."), names)?;
+                Ok(())
             }
-            // Whole numbers stand for numbers.
-            (toml::Value::Float(known), toml::Value::Integer(whole)) => *known = whole as f64,
-            (toml::Value::Integer(_), toml::Value::Integer(..0)) => {
-                return Err(Mistake {
-                    problem: format!("`{full}` must not be negative"),
-                    key: full,
-                });
-            }
-            (known, value) if known.same_type(&value) => *known = value,
-            (known, value) => {
-                let (wanted, found) = (known.type_str(), value.type_str());
-                return Err(Mistake {
-                    problem: format!("`{full}` must be of the type {wanted}, not {found}"),
-                    key: full,
-                });
-            }
+            (Some(known), value) => put(known, value).map_err(|why| format!("`{full}` must {why}")),
+        };
+        put.map_err(|problem| Mistake { key: full, problem })?;
+    }
+    Ok(())
+}
+
+/// Writes one value over another of the same kind; the error says what it must be.
+fn put(known: &mut toml::Value, value: toml::Value) -> Result<(), String> {
+    match (known, value) {
+        // Whole numbers stand for numbers.
+        (toml::Value::Float(known), toml::Value::Integer(whole)) => *known = whole as f64,
+        (toml::Value::Integer(_), toml::Value::Integer(..0)) => {
+            return Err("not be negative".to_string());
+        }
+        (known, value) if known.same_type(&value) => *known = value,
+        (known, value) => {
+            let (wanted, found) = (known.type_str(), value.type_str());
+            return Err(format!("be of the type {wanted}, not {found}"));
         }
     }
     Ok(())

@@ -8,7 +8,7 @@ use super::milestones;
 use super::progress::Progress;
 use super::record::{self, Recorder, Row};
 use crate::gpu::Device;
-use crate::kernels::layout::OBSERVATION;
+use crate::kernels::layout::{OBSERVATION, whole};
 use crate::motion::database::Database;
 use crate::ppo::rollout::{self, Rollout};
 use crate::ppo::update::{Learner, Losses};
@@ -134,6 +134,13 @@ impl<'a> Run<'a> {
         let learner = match from {
             None => Learner::new(ppo, &device.tensors(), config.seed),
             Some(checkpoint) => {
+                let (envs, frames) = (ppo.envs, database.frames());
+                let shown = &checkpoint.header.world.whole[whole::FRAME * envs..][..envs];
+                if let Some(frame) = shown.iter().find(|&&frame| frame as usize >= frames) {
+                    bail!(
+                        "the checkpoint shows frame {frame} of a database of {frames}: it is damaged"
+                    );
+                }
                 world.restore(&checkpoint.header.world);
                 (steps, earlier_s) = (checkpoint.header.steps, checkpoint.header.wall_s);
                 memory = checkpoint.header.memory.clone();
@@ -217,8 +224,8 @@ impl<'a> Run<'a> {
         self.steps += ppo.batch() as u64;
         if let Some(place) = numbers.iter().position(|number| !number.is_finite()) {
             bail!(
-                "learning diverged: number {place} of update {} is {}; the last checkpoint is from before this. \
-                 Try a lower ppo.learning_rate",
+                "learning diverged: number {place} of update {} is {}; checkpoints are from before it, if \
+                 one was due. Try a lower ppo.learning_rate",
                 self.learner.updates,
                 numbers[place]
             );
@@ -344,7 +351,7 @@ impl<'a> Run<'a> {
         Ok(Checkpoint::take(header, &self.learner)?.save(path)?)
     }
 
-    /// Final evaluation, pictures and summary. After a failure only the summary is written.
+    /// Final evaluation, summary and pictures. After a failure only the summary is written.
     fn conclude(self, outcome: Result<&'static str>) -> Result<Summary> {
         let wall_s = self.wall_s();
         let mut summary = Summary {
@@ -363,8 +370,8 @@ impl<'a> Run<'a> {
                 summary.stopped_by = by;
                 summary.success = report.success;
                 summary.time_to_target_mean_s = report.time_to_target_mean_s;
-                milestones::draw(self.folder, &self.rows, self.database, self.config.plane)?;
                 self.folder.write_summary(&summary)?;
+                milestones::draw(self.folder, &self.rows, self.database, self.config.plane)?;
                 Ok(summary)
             }
             Err(error) => {

@@ -1,0 +1,211 @@
+//! `footwork data`: motion in, databases out, and motion that is refused.
+
+use super::Place;
+use std::path::{Path, PathBuf};
+
+/// A place with the recording `walk/synthetic_000.bvh` and its text.
+fn with_recording() -> (Place, String) {
+    let place = Place::new();
+    place.done("data synth --minutes 1 --out synth.footwork --bvh walk");
+    let text = place.read("walk/synthetic_000.bvh");
+    (place, text)
+}
+
+/// The recording cut to some of its frames; its `Frames:` line says `claimed`.
+fn cut(text: &str, frames: usize, claimed: usize) -> String {
+    let (hierarchy, motion) = text.split_once("Frames:").unwrap();
+    let mut lines = motion.lines().skip(1);
+    let time = lines.next().unwrap();
+    let rows: Vec<&str> = lines.take(frames).collect();
+    format!(
+        "{hierarchy}Frames: {claimed}\n{time}\n{}\n",
+        rows.join("\n")
+    )
+}
+
+fn fingerprint(told: &str) -> &str {
+    told.rsplit_once("fingerprint ").unwrap().1[..8].trim()
+}
+
+#[test]
+fn synthetic_motion_can_be_looked_at() {
+    let place = Place::new();
+    let made = place.done("data synth --minutes 3 --out small.footwork");
+    assert!(made.out.contains("3.0 minutes"), "{made:?}");
+    let info = place.done("data info small.footwork --picture coverage.png");
+    for part in [
+        "synthetic_000",
+        "CC0-1.0",
+        "3.0 minutes",
+        "turning < 20 deg/s",
+    ] {
+        assert!(info.out.contains(part), "no {part} in {info:?}");
+    }
+    assert!(info.out.contains(fingerprint(&made.out)));
+    assert!(place.path("coverage.png").metadata().unwrap().len() > 1000);
+    assert!(info.err.is_empty(), "{info:?}");
+    let embedded = place.done("data info");
+    assert!(embedded.err.contains("synthetic motion"), "{embedded:?}");
+}
+
+#[test]
+fn the_seed_decides_what_is_performed() {
+    let place = Place::new();
+    let make = |seed| {
+        let told = place.done(&format!(
+            "data synth --minutes 1 --seed {seed} --out a.footwork"
+        ));
+        fingerprint(&told.out).to_string()
+    };
+    assert_eq!(make(7), make(7));
+    assert_ne!(make(7), make(8));
+}
+
+#[test]
+fn recordings_become_a_database() {
+    let (place, text) = with_recording();
+    let plain = place.done("data import walk --out plain.footwork");
+    assert!(
+        plain.out.contains("1 clips, 1.0 minutes, 1770 candidates"),
+        "{plain:?}"
+    );
+    let mirrored = place.done("data import walk --out mirrored.footwork --mirror");
+    assert!(
+        mirrored
+            .out
+            .contains("2 clips, 2.0 minutes, 3540 candidates"),
+        "{mirrored:?}"
+    );
+    let info = place.done("data info mirrored.footwork");
+    assert!(info.out.contains("synthetic_000 mirrored"), "{info:?}");
+    let centimetres = place.done("data import walk --out cm.footwork --unit 0.01");
+    assert_eq!(fingerprint(&plain.out), fingerprint(&centimetres.out));
+    let smaller = place.done("data import walk --out small.footwork --unit 0.005");
+    assert_ne!(fingerprint(&plain.out), fingerprint(&smaller.out));
+
+    place.write("walk/synthetic_000.bvh", text.replace("LeftFoot", "Klump"));
+    place.write("roles.toml", "left_foot = \"Klump\"");
+    let roles = place.done("data import walk --out roles.footwork --roles roles.toml");
+    assert_eq!(fingerprint(&plain.out), fingerprint(&roles.out));
+}
+
+#[test]
+fn recordings_that_are_none_are_refused() {
+    let (place, text) = with_recording();
+    let words: Vec<&str> = text.split_inclusive(' ').collect();
+    let with_nan = [
+        &words[..words.len() - 900].concat(),
+        "nan ",
+        &words[words.len() - 899..].concat(),
+    ]
+    .concat();
+    let none = text.replace("LeftFoot", "Klump").replace("LeftToe", "Zeh");
+    for (name, contents, parts) in [
+        (
+            "binary",
+            "\u{0}\u{1}\u{2}",
+            &["binary.bvh, line 1", "begins with HIERARCHY"][..],
+        ),
+        ("empty", "", &["empty.bvh, line 1", "the file is empty"]),
+        (
+            "hierarchy",
+            &text[..2000],
+            &["hierarchy.bvh, line", "truncated"],
+        ),
+        (
+            "truncated",
+            &text[..text.len() / 2],
+            &["truncated.bvh, line", "the file is truncated"],
+        ),
+        ("nan", &with_nan, &["nan.bvh, line", "no usable number"]),
+        (
+            "frameless",
+            &cut(&text, 0, 0),
+            &["frameless.bvh, line", "zero frames"],
+        ),
+        (
+            "claims",
+            &cut(&text, 50, 4_000_000_000),
+            &["claims.bvh, line", "Frames line is wrong"],
+        ),
+        (
+            "roles",
+            &none,
+            &[
+                "no joint found for left_foot, left_toe;",
+                "--roles FILE",
+                "Zeh",
+            ],
+        ),
+        (
+            "short",
+            &cut(&text, 40, 40),
+            &["no usable clip in", "61 frames"],
+        ),
+    ] {
+        let file = format!("{name}.bvh");
+        place.write(&file, contents);
+        place.refused(&format!("data info {file}"), 1, parts);
+        place.refused(&format!("data import {file} --out a.footwork"), 1, parts);
+        place.refused(
+            &format!("train plane --device cpu --data {file} --out run"),
+            1,
+            parts,
+        );
+    }
+    place.write("bytes.bvh", b"HIERARCHY\n\xff\xfe");
+    place.refused("data info bytes.bvh", 1, &["not UTF-8", "line 2"]);
+    let giant = std::fs::File::create(place.path("giant.bvh")).unwrap();
+    giant.set_len(2 << 30).unwrap();
+    place.refused("data info giant.bvh", 1, &["giant.bvh holds more than"]);
+}
+
+#[test]
+fn mistakes_of_an_import_are_explained() {
+    let (place, text) = with_recording();
+    let legs = "the legs would be";
+    place.refused(
+        "data import walk --out a --unit 1",
+        1,
+        &[legs, "--unit METRES"],
+    );
+    for (roles, part) in [
+        ("left_fot = \"LeftFoot\"", "did you mean 'left_foot'?"),
+        ("left_foot = \"LeftFoo\"", "did you mean 'LeftFoot'?"),
+        ("left_foot = 3", "must be a joint's name in quotes"),
+        ("left_foot =", "TOML parse error at line 1"),
+    ] {
+        place.write("roles.toml", roles);
+        place.refused("data import walk --out a --roles roles.toml", 2, &[part]);
+    }
+    place.refused(
+        "data import walk --out a --roles gone.toml",
+        2,
+        &["cannot be read"],
+    );
+    place.write("walk/other.bvh", text.replace("Head", "Kopf"));
+    let skeletons = &[
+        "two different skeletons",
+        "'Head'",
+        "'Kopf'",
+        "folders of their own",
+    ];
+    place.refused("data import walk --out a", 1, skeletons);
+}
+
+#[test]
+fn real_recordings_are_imported() {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/mocap");
+    let mocap = std::env::var_os("FOOTWORK_MOCAP").map_or(beside, PathBuf::from);
+    let folder = mocap.join("lafan1");
+    if !folder.is_dir() {
+        println!("SKIPPED: no recordings in {}", mocap.display());
+        return;
+    }
+    let place = Place::new();
+    let words = format!("data import {} --out real.footwork", folder.display());
+    let made = place.done(&words);
+    assert!(made.err.contains("note: left out"), "{made:?}");
+    let info = place.done("data info real.footwork");
+    assert!(info.out.contains(fingerprint(&made.out)), "{info:?}");
+}

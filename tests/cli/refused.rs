@@ -1,0 +1,225 @@
+//! Options and configurations that cannot be meant: exit code 2, and nothing is made.
+
+use super::{Place, TRAIN};
+
+#[test]
+fn mistaken_options_name_what_was_meant() {
+    let place = Place::with_data();
+    for (words, part) in [
+        ("dta", "similar subcommand exists: 'data'"),
+        ("train plan", "similar subcommand exists: 'plane'"),
+        ("train plane --evns 4", "similar argument exists: '--envs'"),
+        ("train plane --device gpux", "similar value exists: 'gpu'"),
+        ("train plane --preset quick", "possible values: fast, paper"),
+        ("train plane --envs 0", "ppo.envs is 0"),
+        ("train plane --envs -5", "invalid value '-5' for '--envs"),
+        ("train plane --envs nan", "invalid value 'nan'"),
+        ("train plane --envs 2000000", "between 1 and 1048576"),
+        ("train plane --envs 99999999999999999999", "too large"),
+        ("train plane --steps 0", "steps is 0"),
+        ("train plane --steps -1", "invalid value '-1'"),
+        ("train plane --steps 18446744073709551615", "steps is"),
+        ("train plane --seed -1", "invalid value '-1'"),
+        ("train plane --seed 4294967296", "not in 0..=4294967295"),
+        ("train plane --max-time 0s", "max_time_s is 0"),
+        ("train plane --max-time 5", "time unit needed"),
+        ("train plane --max-time -5m", "invalid value '-5m'"),
+        ("train plane --stop-success 0", "stop_success is 0"),
+        ("train plane --stop-success 2", "stop_success is 2"),
+        ("train plane --stop-success nan", "stop_success is NaN"),
+        ("train plane --stop-success -1", "stop_success is -1"),
+        ("train plane --config gone.toml", "cannot read gone.toml"),
+        ("train plane --config .", "cannot read .:"),
+        ("train plane --config small.footwork", "cannot read small"),
+        ("train plane --resume run --envs 4", "cannot be used with"),
+        (
+            "train plane --resume run --data small.footwork",
+            "cannot be used with",
+        ),
+        (
+            "train plane --resume run --config a.toml",
+            "cannot be used with",
+        ),
+        ("eval", "required arguments"),
+        (
+            "eval run --episodes 0",
+            "--episodes must be from 1 to 1000000",
+        ),
+        ("eval run --episodes -1", "invalid value '-1'"),
+        ("data import small.footwork", "required arguments"),
+        ("data import gone --out a --unit 0", "--unit must be from"),
+        ("data import gone --out a --unit -1", "--unit must be from"),
+        ("data import gone --out a --unit nan", "--unit must be from"),
+        ("data synth --out a --minutes 0", "--minutes must be from"),
+        ("data synth --out a --minutes -3", "--minutes must be from"),
+        ("data synth --out a --minutes nan", "--minutes must be from"),
+        ("data synth --out a --minutes 1e9", "--minutes must be from"),
+        (
+            "data synth --out a --weights orange",
+            "similar value exists: 'orangeduck'",
+        ),
+    ] {
+        place.refused(words, 2, &[part]);
+    }
+}
+
+#[test]
+fn mistaken_configurations_name_key_line_and_nearest() {
+    let place = Place::with_data();
+    for (text, parts) in [
+        (
+            "stepz = 3",
+            &["unknown key `stepz`", "line 1", "`steps`"][..],
+        ),
+        ("seed = 3\n[pop]\nenvs = 3", &["line 2", "`pop`", "`ppo`"]),
+        (
+            "ppo.learning_rte = 1",
+            &["line 1", "mean `ppo.learning_rate`"],
+        ),
+        (
+            "steps = 9\n[ppo]\nsteps = 9",
+            &["line 3", "key `ppo.steps`", "mean `steps`"],
+        ),
+        (
+            "learning_rate = 1",
+            &["key `learning_rate`", "mean `ppo.learning_rate`"],
+        ),
+        ("ppo = 3", &["line 1", "`ppo` must be of the type table"]),
+        (
+            "[plane]\nreach = \"far\"",
+            &["line 2", "`plane.reach`", "not string"],
+        ),
+        ("steps = \"many\"", &["`steps` must be of the type integer"]),
+        ("steps = 1.5", &["`steps` must be of the type integer"]),
+        ("steps = -1", &["`steps` must not be negative"]),
+        ("seed = 99999999999", &["`seed`"]),
+        ("preset = \"quick\"", &["`quick`", "`fast` or `paper`"]),
+        ("preset = 3", &["`preset` must be of the type string"]),
+        ("device = \"tpu\"", &["`tpu`", "`lavapipe`"]),
+        ("data = 3", &["`data` must be of the type string"]),
+        ("steps = 5\nsteps = 6", &["line 2", "duplicate key"]),
+        ("this is no toml", &["line 1", "expected `=`"]),
+        ("max_time_s = -1", &["max_time_s is -1", "between"]),
+        ("stop_success = 3", &["stop_success is 3", "between"]),
+        ("evaluate_every = 0", &["evaluate_every is 0"]),
+        ("checkpoint_every = 0", &["checkpoint_every is 0"]),
+        (
+            "weights.foot_position = nan",
+            &["weights.foot_position is NaN"],
+        ),
+        (
+            "weights.trajectory_position = 0",
+            &["weights.trajectory_position is 0"],
+        ),
+        ("plane.half_side = inf", &["plane.half_side is inf"]),
+        (
+            "plane.reach = 6",
+            &["plane.reach is 6", "less than plane.half_side"],
+        ),
+        ("plane.bonus = nan", &["plane.bonus is NaN"]),
+        (
+            "plane.max_steps = 4294967295",
+            &["plane.max_steps is 4294967295"],
+        ),
+        (
+            "ppo.horizon = 1000",
+            &["ppo.horizon is 1000", "plane.max_steps"],
+        ),
+        ("ppo.epochs = 0", &["ppo.epochs is 0"]),
+        ("ppo.learning_rate = nan", &["ppo.learning_rate is NaN"]),
+        ("ppo.learning_rate = -1", &["ppo.learning_rate is -1"]),
+        ("ppo.final_rate = nan", &["ppo.final_rate is NaN"]),
+        ("ppo.gamma = 1.5", &["ppo.gamma is 1.5", "between 0 and 1"]),
+        ("ppo.log_std = nan", &["ppo.log_std is NaN"]),
+        ("ppo.max_gradient = -1", &["ppo.max_gradient is -1"]),
+        ("ppo.hidden = [0]", &["a width of ppo.hidden is 0"]),
+        (
+            "ppo.hidden = [1000000000000]",
+            &["a width of ppo.hidden is"],
+        ),
+        (
+            "ppo.hidden = [1, 1, 1, 1, 1, 1, 1, 1, 1]",
+            &["the length of ppo.hidden is 9"],
+        ),
+        (
+            "ppo.hidden = 3",
+            &["`ppo.hidden` must be of the type array"],
+        ),
+    ] {
+        place.write("run.toml", text);
+        place.refused(&format!("{TRAIN} --config run.toml --out run"), 2, parts);
+    }
+    place.write("run.toml", "preset = \"paper\"");
+    let words = format!("{TRAIN} --config run.toml --preset fast --out run");
+    place.refused(&words, 2, &["differ: drop one"]);
+}
+
+#[test]
+fn a_folder_that_is_no_run_is_refused() {
+    let place = Place::with_data();
+    std::fs::create_dir(place.path("empty")).unwrap();
+    for (run, part) in [
+        ("gone", "gone is not a run folder"),
+        ("empty", "empty holds no run: its config.toml is missing"),
+    ] {
+        place.refused(&format!("eval {run}"), 1, &[part]);
+        place.refused(&format!("train plane --resume {run}"), 1, &[part]);
+    }
+    place.refused(
+        "train plane --resume small.footwork",
+        1,
+        &["not a run folder"],
+    );
+    place.refused(
+        "eval small.footwork",
+        1,
+        &["does not lie in the checkpoints of a run"],
+    );
+}
+
+#[test]
+fn data_that_is_not_there_is_refused() {
+    let place = Place::new();
+    std::fs::create_dir_all(place.path("above/inner")).unwrap();
+    std::fs::create_dir(place.path("empty")).unwrap();
+    place.write("above/inner/a.bvh", "");
+    for (path, part) in [
+        ("gone", "cannot read "),
+        ("gone.bvh", "cannot read "),
+        ("empty", "no .bvh file in "),
+        ("above", "above/inner"),
+    ] {
+        place.refused(&format!("data info {path}"), 1, &[part]);
+        place.refused(&format!("data import {path} --out a"), 1, &[part]);
+        place.refused(
+            &format!("train plane --device cpu --data {path} --out run"),
+            1,
+            &[part],
+        );
+    }
+}
+
+/// Vulkan and OpenGL find no driver.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_device_that_is_not_there_is_refused_before_anything_is_made() {
+    let place = Place::with_data();
+    let before = place.list();
+    for (device, part) in [
+        ("gpu", "no GPU found"),
+        ("lavapipe", "no software Vulkan adapter"),
+    ] {
+        let words = format!("train plane --data small.footwork --device {device} --out run");
+        let mut command = place.command(&words);
+        for drivers in [
+            "VK_ICD_FILENAMES",
+            "VK_DRIVER_FILES",
+            "__EGL_VENDOR_LIBRARY_FILENAMES",
+        ] {
+            command.env(drivers, "/nonexistent");
+        }
+        let told = super::Told::from(&words, command.output().unwrap());
+        told.is_refusal(1, &[part, "--device cpu"]);
+        assert_eq!(place.list(), before);
+    }
+}
