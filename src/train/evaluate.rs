@@ -220,8 +220,7 @@ fn send_elsewhere(world: &mut CpuWorld, env: usize, task: Plane) {
     world.real[real::TARGET_Z * envs + env] = world.real[real::Z * envs + env] + place[1];
 }
 
-/// The walks of the first `episodes` evaluation episodes, turned so that each starts facing up the
-/// picture.
+/// The walks of the first `episodes` evaluation episodes, turned so that each starts facing +z.
 pub fn walks(
     controller: &dyn Controller,
     database: &Arc<Database>,
