@@ -1,27 +1,28 @@
-//! The performer's own random numbers, so that a seed means the same motion everywhere.
+//! The performer's random numbers: a named generator and integer arithmetic, so that a seed means
+//! the same motion everywhere.
 
-/// SplitMix64: one 64-bit state, one multiply-xorshift hash a draw.
-pub struct Random(u64);
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::{Rng, SeedableRng};
+
+pub struct Random(Xoshiro256PlusPlus);
 
 impl Random {
     /// A stream of its own for every (seed, stream) pair.
     pub fn new(seed: u64, stream: u64) -> Self {
-        let mut seeder = Random(seed);
-        let base = seeder.bits();
-        Random(base ^ stream.wrapping_mul(0xd134_2543_de82_ef95))
-    }
-
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        let mut bytes = [0; 32];
+        bytes[..8].copy_from_slice(&seed.to_le_bytes());
+        bytes[8..16].copy_from_slice(&stream.to_le_bytes());
+        let mut generator = Xoshiro256PlusPlus::from_seed(bytes);
+        // Nearly equal states take a few draws to part.
+        for _ in 0..32 {
+            generator.next_u64();
+        }
+        Random(generator)
     }
 
     /// Uniform in `low..high`.
     pub fn range(&mut self, low: f32, high: f32) -> f32 {
-        let unit = (self.bits() >> 40) as f32 / (1u64 << 24) as f32;
+        let unit = (self.0.next_u64() >> 40) as f32 / (1u64 << 24) as f32;
         low + (high - low) * unit
     }
 
