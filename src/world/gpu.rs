@@ -256,6 +256,8 @@ const BLOCK: u32 = 64;
 /// Blocks at most: `search_exact` passes over all of them twice, and lavapipe silently stops after
 /// 65,535 loop iterations.
 const BLOCKS: u32 = 16_384;
+/// Scores at most: WebGPU's default limit of 128 MiB a binding.
+const SCORES: u32 = 1 << 25;
 /// Blocks an invocation scores: enough work for each, enough invocations for all.
 const RUN: u32 = 32;
 
@@ -263,7 +265,8 @@ impl Search {
     /// For batches of `count` queries.
     pub fn new(gpu: &Gpu, rows: &[[f32; PADDED]], count: usize) -> Self {
         let candidates = rows.len() as u32;
-        let block = BLOCK * candidates.div_ceil(BLOCK * BLOCKS);
+        let blocks = BLOCKS.min(SCORES / count as u32).max(1);
+        let block = BLOCK * candidates.div_ceil(BLOCK * blocks);
         let halved: Vec<_> = rows.iter().map(search_wide::with_half_square).collect();
         let square = halved
             .iter()

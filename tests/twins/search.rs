@@ -266,6 +266,16 @@ fn finds_the_nearest_where_scores_cancel() {
     }
 }
 
+/// With so many queries the scores of blocks of 64 rows would not fit one binding. Both devices
+/// sum alike, so they agree without tolerance.
+#[test]
+fn finds_the_nearest_for_tens_of_thousands_of_queries_at_once() {
+    let rows = &SYNTHETIC.rows;
+    let queries = Draw::new(11).rows(35_000, 1.0);
+    let by_cpu = on_cpu(&Index::build(rows), &queries);
+    assert!(on_gpu(&gpu(), rows, &queries) == by_cpu);
+}
+
 /// A diverged policy asks for what is not a number: the answer must still be a row.
 #[test]
 fn a_query_that_is_no_number_finds_a_row() {
