@@ -16,7 +16,7 @@ const SPEEDS: [f32; 8] = [0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.5, 4.0];
 
 #[derive(Args)]
 pub struct Eval {
-    /// A run's folder, or one of its checkpoints
+    /// A run's folder, whose last checkpoint is judged, or one of its checkpoints
     run: PathBuf,
     /// Episodes, the same ones for every policy
     #[arg(

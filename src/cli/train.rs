@@ -31,10 +31,10 @@ pub struct Plane {
     /// Environments stepped together
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     envs: Option<usize>,
-    /// Stop after this many environment steps [default: 1000000]
+    /// Stop after this many environment steps in all, resumptions included [default: 1000000]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     steps: Option<u64>,
-    /// Stop after this time, like 90s, 5m or 1h30m; looked at after each update
+    /// Stop after this time in all, like 90s, 5m or 1h30m; looked at after each update
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, allow_hyphen_values = true)]
     max_time: Option<std::time::Duration>,
     /// Stop at this share of successful evaluation episodes, like 0.99
@@ -75,6 +75,8 @@ impl Plane {
         };
         config.check()?;
         let device = Device::open(config.device)?;
+        // A resumed run must not change its device because another has appeared.
+        config.device = device.choice();
         let (database, notes) = data::load(config.data.as_deref(), config.weights)?;
         for note in notes {
             eprintln!("note: {note}");
@@ -91,6 +93,11 @@ impl Plane {
         };
         if let Some(checkpoint) = &checkpoint {
             checkpoint.check_same(&config)?;
+            if checkpoint.header.steps >= config.steps {
+                let done = checkpoint.header.steps;
+                let why = format!("the run has done {done} steps: give a larger --steps");
+                return Err(Usage(why).into());
+            }
         }
         let folder = match resumed {
             Some(folder) => folder,

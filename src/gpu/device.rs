@@ -69,6 +69,15 @@ impl Device {
         }
     }
 
+    /// What to ask for to get this device again.
+    pub fn choice(&self) -> Choice {
+        match self {
+            Device::Cpu => Choice::Cpu,
+            Device::Gpu(gpu) if gpu.software => Choice::Lavapipe,
+            Device::Gpu(_) => Choice::Gpu,
+        }
+    }
+
     /// Where burn keeps the tensors that go with this device.
     pub fn tensors(&self) -> TensorDevice {
         match self {

@@ -183,11 +183,6 @@ impl Database {
         self.frames() as f32 / super::RATE / 60.0
     }
 
-    /// Normalised, padded features of one candidate.
-    pub fn row(&self, candidate: usize) -> &[f32; PADDED] {
-        &self.features[self.candidates[candidate] as usize]
-    }
-
     /// Normalised, padded features of all candidates.
     pub fn rows(&self) -> Vec<[f32; PADDED]> {
         self.candidates

@@ -96,15 +96,6 @@ impl Normalisation {
     pub fn apply(&self, row: &[f32; FEATURE]) -> [f32; FEATURE] {
         std::array::from_fn(|i| (row[i] - self.mean[i]) * self.scale[i])
     }
-
-    /// Metres back from a normalised trajectory (an action).
-    pub fn trajectory(&self, action: &[f32]) -> Vec<f32> {
-        action
-            .iter()
-            .enumerate()
-            .map(|(i, a)| a / self.scale[POSE + i] + self.mean[POSE + i])
-            .collect()
-    }
 }
 
 #[cfg(test)]

@@ -30,7 +30,8 @@ pub struct Ppo {
     /// Environment steps of the fall; 0 for none.
     pub anneal_steps: u64,
     /// After each update the learning rate is divided by 1.5 if the mean KL divergence was over
-    /// twice this, multiplied by 1.5 if under half of it. 0 leaves it alone.
+    /// twice this (down to 1e-5), multiplied by 1.5 if under half of it (up to 1e-2). 0 leaves it
+    /// alone.
     pub target_kl: f64,
     pub gamma: f32,
     pub lambda: f32,
@@ -52,6 +53,11 @@ pub struct Ppo {
 }
 
 impl Ppo {
+    /// All choices as TOML text, to compare runs by.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).unwrap_or_default()
+    }
+
     /// Samples of one update.
     pub fn batch(&self) -> usize {
         self.envs * self.horizon

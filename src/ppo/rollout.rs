@@ -23,8 +23,10 @@ pub struct Rollout {
     pub target: Tensor<1>,
     /// Logarithm of the standard deviation the actions were drawn with.
     pub log_std: Tensor<1>,
-    /// Share of the time spent in the networks, not in the worlds.
-    pub acting_share: f64,
+    /// Seconds spent in the networks.
+    pub act_s: f64,
+    /// Seconds spent in the worlds.
+    pub simulate_s: f64,
 }
 
 /// Steps all worlds `horizon` times.
@@ -41,9 +43,10 @@ pub fn collect(
     let (mut observations, mut actions, mut means, mut log_probs) =
         (vec![], vec![], vec![], vec![]);
     let mut acting_share = 0.0;
+    let begin = Instant::now();
     for step in 0..config.horizon {
         // A GPU only queues what it is asked for; the first step of a rollout waits for it, to
-        // see where the time goes.
+        // see how the time of all divides.
         let clock = || -> Result<Instant> {
             if step == 0 {
                 device.sync()?;
@@ -66,6 +69,8 @@ pub fn collect(
         means.push(mean);
         log_probs.push(log_prob);
     }
+    device.sync()?;
+    let stepped = Instant::now();
     let observation = Tensor::cat(observations, 0);
     // The critic does not act: one large batch is quicker than many small ones.
     let value = policy.value(observation.clone());
@@ -76,6 +81,8 @@ pub fn collect(
         scale: scale.mean_and_deviation(),
     };
     let (advantage, target) = world.judge(values, config.gamma, config.lambda);
+    device.sync()?;
+    let stepping = (stepped - begin).as_secs_f64();
     Ok(Rollout {
         observation,
         action: Tensor::cat(actions, 0),
@@ -85,6 +92,7 @@ pub fn collect(
         advantage,
         target,
         log_std: policy.log_std.clone(),
-        acting_share,
+        act_s: stepping * acting_share + stepped.elapsed().as_secs_f64(),
+        simulate_s: stepping * (1.0 - acting_share),
     })
 }

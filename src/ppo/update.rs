@@ -72,12 +72,9 @@ impl Learner {
             kl_coefficient: config.kl_coefficient,
             updates: 0,
             seed,
-            // Flex runs one tensor operation on one core: pieces of a minibatch fill them all.
-            shards: if *device == Device::flex() {
-                rayon::current_num_threads()
-            } else {
-                1
-            },
+            // Flex runs one tensor operation on one core: two pieces occupy two of them. The number
+            // is fixed, so that results do not depend on the machine's cores.
+            shards: if *device == Device::flex() { 2 } else { 1 },
         }
     }
 
@@ -190,9 +187,9 @@ impl Learner {
         let kl = f64::from(kl);
         if config.target_kl > 0.0 {
             if kl > 2.0 * config.target_kl {
-                self.learning_rate = (self.learning_rate / 1.5).max(1e-5);
+                self.learning_rate = (self.learning_rate / 1.5).max(self.learning_rate.min(1e-5));
             } else if kl < 0.5 * config.target_kl {
-                self.learning_rate = (self.learning_rate * 1.5).min(1e-2);
+                self.learning_rate = (self.learning_rate * 1.5).min(self.learning_rate.max(1e-2));
             }
         }
         if config.anneal_steps > 0 {

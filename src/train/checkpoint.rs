@@ -27,13 +27,16 @@ pub struct Header {
     /// Of the database: a policy is of no use with another.
     pub database: u32,
     pub hidden: Vec<usize>,
+    /// All choices of learning, as TOML.
+    pub ppo: String,
     pub plane: Plane,
     pub seed: u32,
     pub steps: u64,
     pub wall_s: f64,
     pub updates: u64,
-    pub learning_rate: f64,
-    pub kl_coefficient: f64,
+    /// Learning rate and KL coefficient, kept among the arrays: JSON may round them.
+    #[serde(skip)]
+    pub rates: [f64; 2],
     pub adam_steps: u64,
     pub scale_updates: u64,
     pub world: Snapshot,
@@ -108,8 +111,7 @@ impl Checkpoint {
             moments: vector(&self.value_moments, device),
             updates: self.header.scale_updates,
         };
-        learner.learning_rate = self.header.learning_rate;
-        learner.kl_coefficient = self.header.kl_coefficient;
+        [learner.learning_rate, learner.kl_coefficient] = self.header.rates;
         learner.updates = self.header.updates;
         learner
     }
@@ -122,6 +124,7 @@ impl Checkpoint {
         arrays.put("value_moments", &self.value_moments);
         arrays.put("real", &self.header.world.real);
         arrays.put("whole", &self.header.world.whole);
+        arrays.put("rates", &self.header.rates);
         crate::store::save(path, FORMAT, &self.header, &arrays)
     }
 
@@ -141,6 +144,7 @@ impl Checkpoint {
         let value_moments = floats("value_moments")?;
         header.world.real = floats("real")?;
         header.world.whole = arrays.take("whole").ok_or_else(|| damaged("no whole"))?;
+        let rates: Vec<f64> = arrays.take("rates").ok_or_else(|| damaged("no rates"))?;
         let expected = Shape::new(&header.hidden).parameters();
         let envs = header.world.whole.len() / whole::FIELDS;
         let numbers = [
@@ -155,6 +159,13 @@ impl Checkpoint {
             .flatten()
             .all(|number| number.is_finite())
         {
+            return Err(damaged("it has numbers that are not finite"));
+        }
+        let Ok(rates) = <[f64; 2]>::try_from(rates) else {
+            return Err(damaged("its rates are not two"));
+        };
+        header.rates = rates;
+        if !rates.iter().all(|rate| rate.is_finite()) {
             return Err(damaged("it has numbers that are not finite"));
         }
         let fits = envs > 0
@@ -180,6 +191,7 @@ impl Checkpoint {
         let same = [
             ("ppo.envs", envs == config.ppo.envs),
             ("ppo.hidden", header.hidden == config.ppo.hidden),
+            ("ppo", config.ppo.to_toml() == header.ppo),
             ("plane", header.plane == config.plane),
             ("seed", header.seed == config.seed),
         ];

@@ -16,7 +16,8 @@ pub enum Preset {
     /// Found by measuring: what trains quickest on two cores.
     #[default]
     Fast,
-    /// RLlib's PPO defaults of 2023, which the paper used.
+    /// RLlib's PPO defaults of 2023, which the paper used, but for the critic: its targets are
+    /// normalised, its loss is halved, and its clip limits the change of its output.
     Paper,
 }
 

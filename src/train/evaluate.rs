@@ -110,7 +110,7 @@ pub struct Report {
     /// Length walked over time, m/s.
     pub mean_speed: f64,
     /// After the target has suddenly moved: time until the character nears the new one at
-    /// 0.5 m/s, s.
+    /// 0.5 m/s, s; 10 if it never does.
     pub turn_delay_mean_s: f64,
 }
 
@@ -204,7 +204,7 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 /// Moves one character's target to a random place of the task's square around it, at least 2 m
-/// away so that there is something to turn to.
+/// (or two fifths of the square's half side) away, so that there is something to turn to.
 fn send_elsewhere(world: &mut CpuWorld, env: usize, task: Plane) {
     const STREAM: u32 = 0x5455_524e;
     let envs = world.envs();

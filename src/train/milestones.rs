@@ -17,11 +17,11 @@ pub const STEPS: [u64; 4] = [20_000, 100_000, 533_000, 1_000_000];
 /// Episodes drawn for each policy.
 const WALKS: usize = 6;
 
-/// The first milestone in `(before, now]`.
-pub fn crossed(before: u64, now: u64) -> Option<u64> {
+/// The milestones in `(before, now]`.
+pub fn crossed(before: u64, now: u64) -> impl Iterator<Item = u64> {
     STEPS
         .into_iter()
-        .find(|&steps| before < steps && steps <= now)
+        .filter(move |&steps| before < steps && steps <= now)
 }
 
 /// Draws `learning_curve.png` and, once a milestone is reached, `trajectories.png`.
@@ -57,7 +57,7 @@ pub fn draw(folder: &Folder, rows: &[Row], database: &Arc<Database>, task: Plane
             colour,
         });
         groups.push(Group {
-            title: format!("{} steps", chart::steps(steps as f64)),
+            title: format!("{} steps", chart::steps(checkpoint.header.steps as f64)),
             paths: paths.collect(),
         });
     }

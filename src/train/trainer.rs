@@ -26,8 +26,24 @@ pub const TASK: &str = "plane";
 pub const EPISODES: usize = 1000;
 /// Fewer, to see whether all of them are worth running.
 const GLANCE: usize = 100;
+/// A glance this far below the goal may still be chance: two standard errors at 98 %.
+const DOUBT: f64 = 0.03;
 /// Training success this far below the goal is worth a glance.
 const NEAR: f64 = 0.15;
+/// What an update reads back.
+const NUMBERS: [&str; 11] = [
+    "policy loss",
+    "value loss",
+    "entropy",
+    "KL divergence",
+    "clip fraction",
+    "explained variance",
+    "number of episodes",
+    "number of successes",
+    "number of steps",
+    "summed return",
+    "sum of the parameters",
+];
 /// Recent success and return are means over at least so many episodes.
 const RECENT: f32 = 500.0;
 
@@ -217,15 +233,17 @@ impl<'a> Run<'a> {
             ppo,
             self.device,
         )?;
-        let collected = start.elapsed().as_secs_f64();
         let losses = self.learner.update(&rollout, ppo);
-        // The one read-back of an update.
-        let numbers = tensors::read(Tensor::cat(vec![losses, self.world.tally()], 0))?;
+        // The one read-back of an update. The parameters' sum shows whether the last step broke them.
+        let parameters = self.learner.parameters.clone().sum();
+        let numbers = Tensor::cat(vec![losses, self.world.tally(), parameters], 0);
+        let numbers = tensors::read(numbers)?;
         self.steps += ppo.batch() as u64;
         if let Some(place) = numbers.iter().position(|number| !number.is_finite()) {
             bail!(
-                "learning diverged: number {place} of update {} is {}; checkpoints are from before it, if \
-                 one was due. Try a lower ppo.learning_rate",
+                "learning diverged: the {} of update {} is {}; checkpoints are from before it, if one was \
+                 due. Try a lower ppo.learning_rate",
+                NUMBERS[place],
                 self.learner.updates,
                 numbers[place]
             );
@@ -238,25 +256,12 @@ impl<'a> Run<'a> {
             returns: numbers[9],
         };
         self.memory.remember(tally);
-        let row = self.row(
-            losses,
-            tally,
-            &rollout,
-            collected,
-            start.elapsed().as_secs_f64(),
-        );
+        let row = self.row(losses, tally, &rollout, start.elapsed().as_secs_f64());
         self.learner.adapt(losses.kl, self.steps, ppo);
         Ok(row)
     }
 
-    fn row(
-        &self,
-        losses: Losses,
-        tally: Tally,
-        rollout: &Rollout,
-        collected: f64,
-        total: f64,
-    ) -> Row {
+    fn row(&self, losses: Losses, tally: Tally, rollout: &Rollout, total: f64) -> Row {
         let per_episode =
             |sum: f32| (tally.episodes > 0.0).then(|| f64::from(sum / tally.episodes));
         Row {
@@ -275,9 +280,9 @@ impl<'a> Run<'a> {
             explained_variance: losses.explained_variance,
             learning_rate: self.learner.learning_rate,
             steps_per_s: self.config.ppo.batch() as f64 / total,
-            simulate_s: collected * (1.0 - rollout.acting_share),
-            act_s: collected * rollout.acting_share,
-            learn_s: total - collected,
+            simulate_s: rollout.simulate_s,
+            act_s: rollout.act_s,
+            learn_s: total - rollout.simulate_s - rollout.act_s,
             evaluated_success: None,
             evaluated_time_s: None,
         }
@@ -290,7 +295,7 @@ impl<'a> Run<'a> {
         else {
             return Ok(false);
         };
-        if recent < goal - NEAR || self.judge(GLANCE)?.success < goal {
+        if recent < goal - NEAR || self.judge(GLANCE)?.success < goal - DOUBT {
             return Ok(false);
         }
         let report = self.judge(EPISODES)?;
@@ -315,17 +320,18 @@ impl<'a> Run<'a> {
 
     /// Saves what this update has earned: periodic, milestone and best checkpoints.
     fn keep(&mut self, before: u64) -> Result<()> {
-        if let Some(steps) = milestones::crossed(before, self.steps) {
+        // The best is looked for as often as success is, and before what follows is saved, which
+        // remembers it.
+        if self.crossed(self.config.evaluate_every, before) && self.memory.improved() {
+            self.save(&self.folder.checkpoint("best"))?;
+        }
+        for steps in milestones::crossed(before, self.steps) {
             self.save(&self.folder.checkpoint_at(steps))?;
         }
         if self.crossed(self.config.checkpoint_every, before) {
             let every = self.config.checkpoint_every;
             self.save(&self.folder.checkpoint_at(self.steps / every * every))?;
             self.save(&self.folder.checkpoint("last"))?;
-        }
-        // The best is looked for as often as success is, not at every update.
-        if self.crossed(self.config.evaluate_every, before) && self.memory.improved() {
-            self.save(&self.folder.checkpoint("best"))?;
         }
         Ok(())
     }
@@ -336,13 +342,13 @@ impl<'a> Run<'a> {
             observation: OBSERVATION,
             database: self.database.fingerprint,
             hidden: self.config.ppo.hidden.clone(),
+            ppo: self.config.ppo.to_toml(),
             plane: self.config.plane,
             seed: self.config.seed,
             steps: self.steps,
             wall_s: self.wall_s(),
             updates: self.learner.updates,
-            learning_rate: self.learner.learning_rate,
-            kl_coefficient: self.learner.kl_coefficient,
+            rates: [self.learner.learning_rate, self.learner.kl_coefficient],
             adam_steps: self.learner.adam.steps,
             scale_updates: self.learner.scale.updates,
             world: self.world.snapshot()?,

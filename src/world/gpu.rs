@@ -258,8 +258,10 @@ const BLOCK: u32 = 64;
 const BLOCKS: u32 = 16_384;
 /// Scores at most: WebGPU's default limit of 128 MiB a binding.
 const SCORES: u32 = 1 << 25;
-/// Blocks an invocation scores: enough work for each, enough invocations for all.
+/// Blocks an invocation scores at most: enough work for each, enough invocations for all.
 const RUN: u32 = 32;
+/// Rows an invocation scores at most, for lavapipe's limit again.
+const ROWS: u32 = 32_768;
 
 impl Search {
     /// For batches of `count` queries.
@@ -292,12 +294,13 @@ impl Search {
             longest,
             ..
         } = *self;
+        let run = (ROWS / block).clamp(1, RUN);
         if gpu.software {
             let params = search_wide::Params {
                 count,
                 candidates,
                 block,
-                run: RUN,
+                run,
             };
             search_wide::launch(gpu, &self.rows, queries, &self.score, &params);
         } else {
@@ -305,7 +308,7 @@ impl Search {
                 count,
                 candidates,
                 block,
-                run: RUN,
+                run,
             };
             search_tile::launch(gpu, &self.rows, queries, &self.score, &params);
         }

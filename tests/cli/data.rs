@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// A place with the recording `walk/synthetic_000.bvh` and its text.
 fn with_recording() -> (Place, String) {
     let place = Place::new();
-    place.done("data synth --minutes 1 --out synth.footwork --bvh walk");
+    place.done("data synth --minutes 0.5 --out synth.footwork --bvh walk");
     let text = place.read("walk/synthetic_000.bvh");
     (place, text)
 }
@@ -66,14 +66,14 @@ fn recordings_become_a_database() {
     let (place, text) = with_recording();
     let plain = place.done("data import walk --out plain.footwork");
     assert!(
-        plain.out.contains("1 clips, 1.0 minutes, 1770 candidates"),
+        plain.out.contains("1 clips, 0.5 minutes, 870 candidates"),
         "{plain:?}"
     );
     let mirrored = place.done("data import walk --out mirrored.footwork --mirror");
     assert!(
         mirrored
             .out
-            .contains("2 clips, 2.0 minutes, 3540 candidates"),
+            .contains("2 clips, 1.0 minutes, 1740 candidates"),
         "{mirrored:?}"
     );
     let info = place.done("data info mirrored.footwork");

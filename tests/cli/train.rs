@@ -173,6 +173,26 @@ fn a_seed_gives_one_result_and_a_stop_does_not_change_it() {
     assert_eq!(place.json("halves/summary.json")["steps"], 16384);
 }
 
+/// On the GPU path too, one process a run, as the program is used.
+#[test]
+fn a_seed_gives_one_result_on_lavapipe() {
+    let place = Place::with_data();
+    let text = "checkpoint_every = 512\n[ppo]\nhorizon = 8\nminibatch = 128";
+    place.write("run.toml", text);
+    let train = |rest: &str| {
+        place.done(&format!(
+            "train plane --data small.footwork --device lavapipe --envs 64 --config run.toml {rest}"
+        ))
+    };
+    train("--steps 2048 --out whole");
+    train("--steps 2048 --out again");
+    train("--steps 1024 --out halves");
+    place.done("train plane --resume halves --steps 2048");
+    let whole = state(&place, "whole");
+    assert!(whole == state(&place, "again"));
+    assert!(whole == state(&place, "halves"));
+}
+
 #[test]
 fn a_database_made_with_other_weights_keeps_them() {
     let place = Place::new();
