@@ -40,7 +40,8 @@ pub struct Plane {
     /// Stop at this share of successful evaluation episodes, like 0.99
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     stop_success: Option<f64>,
-    /// The same seed on the same device gives the same result [default: 1]
+    /// The same seed on the same device gives the same result (lavapipe: but for last digits)
+    /// [default: 1]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seed: Option<u32>,
     /// `fast` as measured here, or `paper` with the paper's settings [default: fast]

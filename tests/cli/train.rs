@@ -173,8 +173,8 @@ fn a_seed_gives_one_result_and_a_stop_does_not_change_it() {
     assert_eq!(place.json("halves/summary.json")["steps"], 16384);
 }
 
-/// On the GPU path too, but for the last digits: on lavapipe one run in some twenty rounds a few
-/// sums otherwise than the rest.
+/// On the GPU path too, but for the last digits: on lavapipe a run now and then rounds a few sums
+/// otherwise than the rest.
 #[test]
 fn a_seed_gives_one_result_on_lavapipe() {
     let place = Place::with_data();
