@@ -1,4 +1,5 @@
-//! The plane task's environments alone, in steps a second: random actions, no networks.
+//! Both tasks' environments alone, in steps a second: random actions, no networks. Obstacles are on
+//! the hardest level, hits, collisions and maps included.
 //!
 //! `cargo bench --bench world` uses the synthetic motion; with `FOOTWORK_DATA` a database file or
 //! a folder of BVH files. Lavapipe and a real GPU are measured where there is one.
@@ -9,7 +10,7 @@ use footwork::gpu::{Choice, Device};
 use footwork::motion::features::TRAJECTORY;
 use footwork::motion::normalise::Weights;
 use footwork::train::data;
-use footwork::world::{self, Plane};
+use footwork::world::{self, LEVELS, Obstacles, Plane, Setup, Task};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -18,28 +19,45 @@ fn world(criterion: &mut Criterion) {
     let (database, _) =
         data::load(path.as_deref(), Weights::PAPER).expect("the data of FOOTWORK_DATA");
     let database = Arc::new(database);
+    let tasks = [
+        Task::Plane(Plane::default()),
+        Task::Obstacles(Obstacles::PAPER),
+    ];
     let mut group = criterion.benchmark_group("world");
     for choice in [Choice::Cpu, Choice::Lavapipe, Choice::Gpu] {
         let Ok(device) = Device::open(choice) else {
             eprintln!("no {choice:?} here");
             continue;
         };
-        for envs in [256, 2048] {
-            let mut world = world::open(&device, &database, Plane::default(), envs, 16, 1);
+        for (task, envs) in tasks
+            .iter()
+            .flat_map(|&task| [256, 2048].map(|envs| (task, envs)))
+        {
+            let setup = Setup {
+                task,
+                envs,
+                horizon: 16,
+                seed: 1,
+                level: LEVELS - 1,
+            };
+            let mut world = world::open(&device, &database, &setup);
             let tensors = device.tensors();
             let mean = Tensor::<2>::zeros([envs, TRAJECTORY], &tensors);
             let log_std = Tensor::<1>::zeros([TRAJECTORY], &tensors);
             group.throughput(Throughput::Elements(envs as u64 * 16));
-            group.bench_function(format!("{choice:?}, {envs} environments"), |b| {
-                b.iter(|| {
-                    for _ in 0..16 {
-                        let (action, _) = world.act(mean.clone(), log_std.clone());
-                        world.step(action);
-                        world.observe();
-                    }
-                    device.sync().expect("the device is there");
-                });
-            });
+            group.bench_function(
+                format!("{}, {choice:?}, {envs} environments", task.name()),
+                |b| {
+                    b.iter(|| {
+                        for _ in 0..16 {
+                            let (action, _) = world.act(mean.clone(), log_std.clone());
+                            world.step(action);
+                            world.observe();
+                        }
+                        device.sync().expect("the device is there");
+                    });
+                },
+            );
         }
     }
     group.finish();

@@ -6,9 +6,11 @@ use std::fs;
 use std::io::BufReader;
 use std::path::Path;
 
+use footwork::report::ablation::{self, Method};
 use footwork::report::coverage::{self, Samples};
 use footwork::report::events::{self, EventWriter};
-use footwork::report::learning_curve::{self, Mark, Point};
+use footwork::report::learning_curve::{self, Level, Mark, Point};
+use footwork::report::obstacle_walks::{self, CELLS, End, Episode, Obstacle};
 use footwork::report::trajectories::{self, Group};
 use footwork::report::{Error, picture, table::table};
 
@@ -46,6 +48,11 @@ impl Picture {
             }
         }
         seen.len()
+    }
+
+    fn pixel(&self, x: usize, y: usize) -> [u8; 3] {
+        let at = 3 * (y * self.width + x);
+        [self.rgb[at], self.rgb[at + 1], self.rgb[at + 2]]
     }
 
     fn has(&self, colour: [u8; 3]) -> bool {
@@ -88,7 +95,7 @@ fn mark(steps: u64, colour: usize) -> Mark {
 #[test]
 fn a_learning_curve_fills_its_panels() {
     let marks = [mark(100_000, 1), mark(533_000, 2)];
-    let picture = drawn(|path| learning_curve::draw(path, &training(), &marks));
+    let picture = drawn(|path| learning_curve::draw(path, &training(), &marks, &[]));
     assert_eq!((picture.width, picture.height), (1600, 1100));
     for panel in [(0.05, 0.28), (0.33, 0.56), (0.6, 0.84)] {
         assert!(picture.colours((0.1, 0.9), panel) > 30);
@@ -127,7 +134,7 @@ fn a_learning_curve_survives_whatever_it_is_given() {
     ];
     let marks = [mark(0, 0), mark(5, 99), mark(u64::MAX, 1)];
     for points in cases {
-        let picture = drawn(|path| learning_curve::draw(path, &points, &marks));
+        let picture = drawn(|path| learning_curve::draw(path, &points, &marks, &[]));
         assert!(picture.colours((0.0, 1.0), (0.0, 1.0)) > 5);
     }
 }
@@ -135,8 +142,46 @@ fn a_learning_curve_survives_whatever_it_is_given() {
 #[test]
 fn more_labels_than_fit_are_left_out() {
     let marks: Vec<Mark> = (0..60).map(|index| mark(1000 * index, 0)).collect();
-    let picture = drawn(|path| learning_curve::draw(path, &training(), &marks));
+    let picture = drawn(|path| learning_curve::draw(path, &training(), &marks, &[]));
     assert!(picture.height < 1300);
+}
+
+fn levels(begins: &[u64]) -> Vec<Level> {
+    let level = |(level, &steps)| Level { steps, level };
+    begins.iter().enumerate().map(level).collect()
+}
+
+#[test]
+fn levels_take_one_row_however_close_they_begin() {
+    let plain = drawn(|path| learning_curve::draw(path, &training(), &[], &[]));
+    for begins in [
+        vec![0],
+        vec![0, 90_000, 300_000, 301_000, 302_000, 999_999],
+        vec![500_000; 10],
+        (0..1000).map(|index| 1000 * index).collect(),
+        vec![u64::MAX, 0],
+    ] {
+        let levels = levels(&begins);
+        let picture = drawn(|path| learning_curve::draw(path, &training(), &[], &levels));
+        assert_eq!(picture.height, plain.height + 30);
+        assert!(picture.colours((0.0, 1.0), (0.022, 0.045)) > 10, "numbers");
+    }
+    let beyond = levels(&[u64::MAX]);
+    let picture = drawn(|path| learning_curve::draw(path, &training(), &[], &beyond));
+    assert_eq!(
+        picture.rgb, plain.rgb,
+        "a level beyond the end is not shown"
+    );
+}
+
+#[test]
+fn marks_stand_above_the_levels() {
+    let (marks, levels) = ([mark(100_000, 1)], levels(&[0, 100_000]));
+    let picture = drawn(|path| learning_curve::draw(path, &training(), &marks, &levels));
+    for row in [(0.02, 0.045), (0.05, 0.07)] {
+        assert!(picture.colours((0.1, 0.3), row) > 10);
+    }
+    assert!(picture.has([0xd5, 0x5e, 0x00]), "the mark");
 }
 
 fn walk(colour: usize, reached: bool) -> trajectories::Path {
@@ -206,6 +251,220 @@ fn paths_survive_whatever_they_are_given() {
     assert_eq!(picture.height, 2 * 572, "five panels take two rows");
 }
 
+const BOX: [u8; 3] = [0xe0, 0xe3, 0xe8];
+const BLOCKED: [u8; 3] = [0x8b, 0x97, 0xa8];
+
+/// Boxes on a grid, each on its way for 0.7 m, and a walk of `steps` steps.
+fn episode(boxes: usize, steps: usize, end: End) -> Episode {
+    let obstacle = |index: usize| {
+        let (x, z) = ((index % 20) as f32 - 9.5, (index / 20) as f32 - 9.5);
+        Obstacle {
+            start: [x - 0.5, z],
+            end: [x, z + 0.5],
+            half: [0.2 + 0.02 * (index % 7) as f32, 0.3],
+        }
+    };
+    let time = |step: usize| 0.2 * step as f32;
+    let mut maps = [[[false; CELLS]; CELLS]; 2];
+    maps[0][12][9] = true;
+    Episode {
+        title: "level 9".to_owned(),
+        obstacles: (0..boxes).map(obstacle).collect(),
+        points: (0..=steps)
+            .map(|step| [time(step), time(step).sin()])
+            .collect(),
+        target: [4.0, -3.0],
+        end,
+        seen: steps / 2,
+        heading: [0.6, 0.8],
+        maps,
+    }
+}
+
+#[test]
+fn every_episode_has_its_panel_and_its_maps() {
+    let episodes = [
+        episode(100, 20, End::Reached),
+        episode(100, 15, End::Collided),
+        episode(100, 25, End::UnderWay),
+    ];
+    let picture = drawn(|path| obstacle_walks::draw(path, &episodes, 0.2));
+    assert_eq!((picture.width, picture.height), (1854, 1526));
+    let (panels, rows) = ([(0.06, 0.36), (0.54, 0.84)], [(0.07, 0.43), (0.55, 0.91)]);
+    for (panel, row) in [(0, 0), (1, 0), (0, 1)] {
+        assert!(picture.colours(panels[panel], rows[row]) > 30);
+    }
+    let ends = [[0x00, 0x9e, 0x73], [0xd5, 0x5e, 0x00], [0x00, 0x72, 0xb2]];
+    let seen = [0xa6, 0x4d, 0x8a];
+    for colour in ends.into_iter().chain([seen, BOX, BLOCKED]) {
+        assert!(picture.has(colour), "{colour:x?}");
+    }
+}
+
+#[test]
+fn the_view_from_above_and_the_maps_are_not_mirrored() {
+    let mut episode = Episode {
+        // Relative to the start 8 m along x and 5 m along z: right of it, and below.
+        points: vec![[100.0, -50.0]],
+        obstacles: vec![Obstacle {
+            start: [108.0, -45.0],
+            end: [108.0, -45.0],
+            half: [1.0, 1.0],
+        }],
+        ..Episode::default()
+    };
+    // Ahead and to the left, which is up and on the left.
+    episode.maps[0][CELLS - 1][CELLS - 1] = true;
+    // A step before: behind and to the right.
+    episode.maps[1][0][0] = true;
+    let picture = drawn(|path| obstacle_walks::draw(path, &[episode], 0.2));
+    let metre = 560.0 / 23.0;
+    let at = |x: f64, z: f64| {
+        let (right, down) = (110.0 + (11.5 + x) * metre, 100.0 + (11.5 + z) * metre);
+        picture.pixel(right as usize, down as usize)
+    };
+    assert_eq!(at(8.5, 5.5), BOX);
+    for (x, z) in [(-8.5, 5.5), (8.5, -5.5), (-8.5, -5.5), (5.5, 8.5)] {
+        assert_eq!(at(x, z), [255; 3]);
+    }
+    let map = |top: usize| {
+        let (left, right, bottom) = (698 + 7, 938 - 8, top + 240 - 8);
+        [
+            (left, top + 7),
+            (right, top + 7),
+            (left, bottom),
+            (right, bottom),
+        ]
+        .map(|(x, y)| picture.pixel(x, y) == BLOCKED)
+    };
+    assert_eq!(map(140), [true, false, false, false]);
+    assert_eq!(map(420), [false, false, false, true]);
+}
+
+#[test]
+fn episodes_survive_whatever_they_are_given() {
+    let far = Episode {
+        points: vec![[0.0, 0.0], [1e30, -1e30], [3.0, f32::MAX]],
+        target: [1e30, 0.0],
+        obstacles: vec![Obstacle {
+            start: [-1e30, 0.0],
+            end: [1e30, 5.0],
+            half: [1e20, 1e30],
+        }],
+        seen: 1,
+        heading: [1e30, -1e30],
+        ..episode(0, 0, End::Collided)
+    };
+    let lost = Episode {
+        points: vec![[0.0, 0.0], [f32::NAN, 1.0], [1.0, f32::INFINITY]],
+        target: [f32::NAN; 2],
+        heading: [f32::NAN, 0.0],
+        ..episode(3, 0, End::Collided)
+    };
+    let unseen = Episode {
+        seen: usize::MAX,
+        ..episode(1, 3, End::Reached)
+    };
+    let episodes = [
+        Episode::default(),
+        episode(0, 0, End::Collided),
+        episode(400, 300, End::Reached),
+        far,
+        lost,
+        unseen,
+    ];
+    for step_s in [0.2, 0.0, 100.0, f32::NAN, f32::INFINITY] {
+        drawn(|path| obstacle_walks::draw(path, &episodes[..3], step_s));
+    }
+    let picture = drawn(|path| obstacle_walks::draw(path, &episodes, 0.2));
+    assert!(picture.colours((0.06, 0.36), (0.4, 0.6)) > 30, "400 boxes");
+    let none = drawn(|path| obstacle_walks::draw(path, &[], 0.2));
+    assert_eq!(none.width, 962);
+}
+
+fn method(colour: usize, lengths: &[usize]) -> Method {
+    let seed = |(seed, &length): (usize, &usize)| {
+        let points = training().into_iter().take(length);
+        let scaled = |point: Point| Point {
+            success: point.success.map(|share| share / (1.0 + 0.2 * seed as f64)),
+            ..point
+        };
+        points.map(scaled).collect()
+    };
+    Method {
+        name: format!("method {colour}"),
+        colour,
+        seeds: lengths.iter().enumerate().map(seed).collect(),
+    }
+}
+
+#[test]
+fn an_ablation_has_a_line_and_a_band_for_every_method() {
+    let methods = [method(0, &[200; 5]), method(2, &[150, 200]), method(4, &[])];
+    let picture = drawn(|path| ablation::draw(path, &methods));
+    assert_eq!((picture.width, picture.height), (1736, 574));
+    for chart in [(0.07, 0.32), (0.4, 0.65), (0.73, 0.98)] {
+        assert!(picture.colours(chart, (0.14, 0.76)) > 30);
+    }
+    let lines = [[0x00, 0x72, 0xb2], [0x00, 0x9e, 0x73]];
+    for colour in lines {
+        assert!(picture.has(colour), "{colour:x?}");
+    }
+    assert!(!picture.has([0xe6, 0x9f, 0x00]), "nothing to show");
+
+    let single = [method(0, &[200])];
+    let without = drawn(|path| ablation::draw(path, &single));
+    let light = |picture: &Picture| {
+        let plot = |index: usize| index / picture.width > 100;
+        let pixels = picture.rgb.chunks_exact(3).enumerate();
+        let band = |pixel: &[u8]| pixel[0] < 210 && pixel[2] > 225;
+        pixels
+            .filter(|&(index, pixel)| plot(index) && band(pixel))
+            .count()
+    };
+    assert!(
+        light(&picture) > 10 * light(&without),
+        "bands of several seeds only"
+    );
+}
+
+#[test]
+fn an_ablation_survives_whatever_it_is_given() {
+    let odd = |value| Point {
+        steps: 10,
+        success: Some(value),
+        episode_return: Some(value),
+        episode_length: None,
+        wall_s: 0.0,
+    };
+    let late = Point {
+        steps: u64::MAX,
+        ..odd(0.5)
+    };
+    let of = |seeds| Method {
+        seeds,
+        ..method(1, &[])
+    };
+    let cases = [
+        vec![],
+        vec![method(0, &[])],
+        vec![method(0, &[0, 1, 200])],
+        vec![method(0, &[1])],
+        vec![of(vec![vec![odd(f64::NAN)], vec![odd(f64::INFINITY)]])],
+        vec![of(vec![
+            vec![odd(f64::MAX)],
+            vec![odd(f64::MIN)],
+            vec![odd(1.0)],
+        ])],
+        vec![of(vec![vec![odd(1.0), odd(2.0)], vec![odd(0.0), late]])],
+        (0..40).map(|colour| method(colour, &[20])).collect(),
+    ];
+    for methods in cases {
+        let picture = drawn(|path| ablation::draw(path, &methods));
+        assert!(picture.colours((0.0, 1.0), (0.0, 1.0)) > 5);
+    }
+}
+
 #[test]
 fn coverage_shows_both_densities_and_their_scale() {
     let waves = |scale: f32, speed: f32| -> Vec<f32> {
@@ -259,13 +518,13 @@ fn coverage_survives_whatever_it_is_given() {
 fn a_picture_that_cannot_be_written_is_an_error_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let missing = folder.path().join("missing").join("picture.png");
-    let error = learning_curve::draw(&missing, &training(), &[]).unwrap_err();
+    let error = learning_curve::draw(&missing, &training(), &[], &[]).unwrap_err();
     assert!(error.to_string().contains("missing"), "{error}");
 
     // A folder in the picture's place: everything succeeds but the last step.
     let taken = folder.path().join("taken.png");
     fs::create_dir(&taken).unwrap();
-    assert!(learning_curve::draw(&taken, &training(), &[]).is_err());
+    assert!(learning_curve::draw(&taken, &training(), &[], &[]).is_err());
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
@@ -330,32 +589,8 @@ fn events_decode() {
 }
 
 #[test]
-fn events_go_on_after_a_resume_and_after_a_torn_record() {
+fn events_refuse_what_is_no_folder() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join(events::FILE_NAME);
-    let add = |count: u64| {
-        let mut writer = EventWriter::append(folder.path(), 0.0).unwrap();
-        (0..count).for_each(|step| writer.scalar("loss", step, 0.0, f64::NAN).unwrap());
-        writer.flush().unwrap();
-        records(&fs::read(&path).unwrap()).len()
-    };
-    assert_eq!(add(3), 4, "started, with its version");
-    assert_eq!(add(2), 6, "continued");
-
-    let file = fs::read(&path).unwrap();
-    fs::write(&path, &file[..file.len() - 7]).unwrap();
-    assert_eq!(add(1), 6, "one torn record lost, one added");
-}
-
-#[test]
-fn events_refuse_what_is_not_theirs() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join(events::FILE_NAME);
-    fs::write(&path, "something else").unwrap();
-    let error = EventWriter::append(folder.path(), 0.0).err().unwrap();
-    assert!(error.to_string().contains("not an event file"), "{error}");
-    assert_eq!(fs::read(&path).unwrap(), b"something else");
-
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
     assert!(EventWriter::create(&file, 0.0).is_err());

@@ -5,12 +5,14 @@ use footwork::gpu::{Choice, Device};
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
 use footwork::motion::performer;
+use footwork::ppo::policy::Shape;
 use footwork::train::checkpoint::Checkpoint;
-use footwork::train::config::{Config, Preset};
-use footwork::train::evaluate::{Scripted, Trained, evaluate};
+use footwork::train::config::{Config, Kind, Preset};
+use footwork::train::controller::{Scripted, Trained};
+use footwork::train::evaluate::hardest;
 use footwork::train::folder::{Folder, Summary};
 use footwork::train::trainer::train;
-use footwork::world::Plane;
+use footwork::world::{Plane, Task};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -24,7 +26,7 @@ fn database(minutes: f32) -> Arc<Database> {
 
 /// Small enough for a few updates to take no time.
 fn small(steps: u64) -> Config {
-    let mut config = Config::preset(Preset::Fast);
+    let mut config = Config::preset(Kind::Plane, Preset::Fast);
     (config.ppo.envs, config.ppo.horizon, config.ppo.minibatch) = (64, 8, 128);
     (config.steps, config.checkpoint_every) = (steps, 512);
     config
@@ -40,7 +42,7 @@ fn run(
     let device = Device::open(device).expect("an adapter");
     let folder = match from {
         Some(_) => Folder::open(out)?,
-        None => Folder::create(Some(out), "plane")?,
+        None => Folder::create(Some(out), config.task.name())?,
     };
     folder.write_config(config)?;
     train(
@@ -66,7 +68,7 @@ fn learns_to_reach_targets_on_the_cpu() {
     let out = tempfile::tempdir().expect("a folder");
     let config = Config {
         steps: 150_000,
-        ..Config::preset(Preset::Fast)
+        ..Config::preset(Kind::Plane, Preset::Fast)
     };
     let summary = run(&config, &database(10.0), Choice::Cpu, out.path(), None).expect("a training");
     assert!(summary.success >= 0.95, "{summary:?}");
@@ -77,27 +79,107 @@ fn learns_to_reach_targets_on_lavapipe() {
     let out = tempfile::tempdir().expect("a folder");
     let config = Config {
         steps: 130_000,
-        ..Config::preset(Preset::Fast)
+        ..Config::preset(Kind::Plane, Preset::Fast)
     };
     let summary =
         run(&config, &database(2.0), Choice::Lavapipe, out.path(), None).expect("a training");
     assert!(summary.success >= 0.8, "{summary:?}");
 }
 
-#[test]
-fn repeats_and_resumes_bit_for_bit() {
+fn repeats_and_resumes(device: Choice) {
     let database = database(1.0);
     let [whole, again, halves] = [(); 3].map(|()| tempfile::tempdir().expect("a folder"));
     let config = small(4 * 512);
-    run(&config, &database, Choice::Cpu, whole.path(), None).expect("a training");
-    run(&config, &database, Choice::Cpu, again.path(), None).expect("a training");
+    run(&config, &database, device, whole.path(), None).expect("a training");
+    run(&config, &database, device, again.path(), None).expect("a training");
     assert!(state(whole.path()) == state(again.path()));
 
-    run(&small(2 * 512), &database, Choice::Cpu, halves.path(), None).expect("a training");
+    run(&small(2 * 512), &database, device, halves.path(), None).expect("a training");
     let half =
         Checkpoint::load(&halves.path().join("checkpoints/last.ckpt")).expect("a checkpoint");
-    run(&config, &database, Choice::Cpu, halves.path(), Some(half)).expect("a training");
+    run(&config, &database, device, halves.path(), Some(half)).expect("a training");
     assert!(state(whole.path()) == state(halves.path()));
+}
+
+#[test]
+fn repeats_and_resumes_bit_for_bit_on_the_cpu() {
+    repeats_and_resumes(Choice::Cpu);
+}
+
+#[test]
+fn repeats_and_resumes_bit_for_bit_on_lavapipe() {
+    repeats_and_resumes(Choice::Lavapipe);
+}
+
+/// Obstacles on small networks.
+fn small_among_obstacles(steps: u64) -> Config {
+    let mut config = Config::preset(Kind::Obstacles, Preset::Fast);
+    let small_ppo = small(steps).ppo;
+    (config.ppo.envs, config.ppo.horizon) = (small_ppo.envs, small_ppo.horizon);
+    (config.ppo.minibatch, config.ppo.epochs) = (small_ppo.minibatch, 1);
+    (config.ppo.network.sight, config.ppo.network.hidden) = (vec![16], vec![16]);
+    (config.steps, config.checkpoint_every) = (steps, 512);
+    config
+}
+
+/// Stopped in the middle of a level, with obstacles on their way.
+fn repeats_and_resumes_among_obstacles(device: Choice) {
+    let database = database(1.0);
+    let [whole, halves] = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
+    let config = |steps| {
+        let mut config = small_among_obstacles(steps);
+        let Task::Obstacles(task) = &mut config.task else {
+            unreachable!("asked for")
+        };
+        // Passed at the first look, so that the second half is on a level where obstacles move.
+        task.pass = 0.001;
+        config
+    };
+    run(&config(6 * 512), &database, device, whole.path(), None).expect("a training");
+    run(&config(4 * 512), &database, device, halves.path(), None).expect("a training");
+    let half =
+        Checkpoint::load(&halves.path().join("checkpoints/last.ckpt")).expect("a checkpoint");
+    assert!(half.header.memory.curriculum.level() > 0, "no level passed");
+    run(
+        &config(6 * 512),
+        &database,
+        device,
+        halves.path(),
+        Some(half),
+    )
+    .expect("a training");
+    assert!(state(whole.path()) == state(halves.path()));
+}
+
+#[test]
+fn repeats_and_resumes_among_obstacles_on_the_cpu() {
+    repeats_and_resumes_among_obstacles(Choice::Cpu);
+}
+
+#[test]
+fn repeats_and_resumes_among_obstacles_on_lavapipe() {
+    repeats_and_resumes_among_obstacles(Choice::Lavapipe);
+}
+
+#[test]
+fn learns_to_pass_the_first_level_among_obstacles() {
+    let out = tempfile::tempdir().expect("a folder");
+    let config = Config {
+        steps: 300_000,
+        ..Config::preset(Kind::Obstacles, Preset::Fast)
+    };
+    run(&config, &database(10.0), Choice::Cpu, out.path(), None).expect("a training");
+    let passed = state(out.path()).header.memory.curriculum.passed;
+    assert!(passed > 0, "no level passed");
+}
+
+#[test]
+fn the_paper_s_network_learns_among_obstacles() {
+    let out = tempfile::tempdir().expect("a folder");
+    let mut config = Config::preset(Kind::Obstacles, Preset::Paper);
+    (config.steps, config.ppo.epochs) = (config.ppo.batch() as u64, 1);
+    let summary = run(&config, &database(1.0), Choice::Cpu, out.path(), None).expect("a training");
+    assert_eq!((summary.stopped_by, summary.level), ("steps", Some(0)));
 }
 
 #[test]
@@ -133,7 +215,7 @@ fn divergence_stops_and_leaves_the_last_good_checkpoint() {
 #[test]
 fn the_paper_preset_trains() {
     let out = tempfile::tempdir().expect("a folder");
-    let mut config = Config::preset(Preset::Paper);
+    let mut config = Config::preset(Kind::Plane, Preset::Paper);
     (config.steps, config.ppo.epochs) = (config.ppo.batch() as u64, 2);
     let summary = run(&config, &database(1.0), Choice::Cpu, out.path(), None).expect("a training");
     assert_eq!(summary.stopped_by, "steps");
@@ -147,7 +229,7 @@ fn faster_scripts_arrive_sooner_and_an_untrained_policy_hardly_ever() {
             database: &database,
             speed,
         };
-        evaluate(&script, &database, Plane::default(), 200).expect("an evaluation")
+        hardest(&script, &database, Task::Plane(Plane::default()), 200).expect("an evaluation")
     };
     let (slow, quick) = (judge(1.0), judge(3.0));
     assert!(
@@ -160,9 +242,9 @@ fn faster_scripts_arrive_sooner_and_an_untrained_policy_hardly_ever() {
     );
     assert!(quick.mean_speed > slow.mean_speed && slow.path_ratio >= 1.0);
 
-    let config = Config::preset(Preset::Fast);
-    let shape = footwork::ppo::policy::Shape::new(&config.ppo.hidden);
-    let untrained = Trained::new(&config.ppo.hidden, &shape.init(1, 0.0));
-    let report = evaluate(&untrained, &database, Plane::default(), 200).expect("an evaluation");
+    let config = Config::preset(Kind::Plane, Preset::Fast);
+    let shape = Shape::new(&config.ppo.network, config.task.width()).expect("a network that fits");
+    let untrained = Trained::new(&shape, &shape.init(1, 0.0));
+    let report = hardest(&untrained, &database, config.task, 200).expect("an evaluation");
     assert!(report.success < 0.5, "{report:?}");
 }

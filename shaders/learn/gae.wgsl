@@ -1,12 +1,13 @@
 // Generalised advantage estimation (Schulman et al. 2016, equation 16) over one rollout.
-// One invocation an environment, backwards in time. A reached target ends the sum; a
-// truncation bootstraps with the value of the last real state and cuts the sum there.
+// One invocation an environment, backwards in time. An end cuts the sum; the ends of `bootstrap`
+// go on with the value of the last real state, the others with nothing.
 //
 // reward        [steps][envs]
-// ended         [steps][envs]   RUNNING, REACHED or TRUNCATED
+// ended         [steps][envs]
 // value         [steps][envs]   the critic's output, normalised
 // next_value    [envs]          of the state after the last step
-// final_value   [envs]          of the last real state of the episode truncated in this rollout
+// final_value   [steps][envs]   of the last real state of an episode that ended there, or [envs] if
+//                               `final_steps` is 1: no environment has two bootstrapped ends then
 // scale         [2]             mean and deviation that undo the critic's normalisation
 // advantage     [steps][envs]   in units of reward
 // target_value  [steps][envs]   in units of reward: what the critic shall learn
@@ -18,6 +19,9 @@ struct Params {
     steps: u32,
     gamma: f32,
     lambda: f32,
+    // Bits, 1 << end.
+    bootstrap: u32,
+    final_steps: u32,
 }
 
 @group(0) @binding(0) var<storage, read> reward: array<f32>;
@@ -39,12 +43,11 @@ fn gae(@builtin(global_invocation_id) id: vec3u) {
     for (var back = 0u; back < params.steps; back++) {
         let at = (params.steps - 1u - back) * params.envs + env;
         let end = ended[at];
-        if (end == REACHED) {
-            after = 0.0;
-        } else if (end == TRUNCATED) {
-            after = final_value[env] * scale[1] + scale[0];
+        if (end != RUNNING) {
+            let last = final_value[select(at, env, params.final_steps == 1u)] * scale[1] + scale[0];
+            after = select(0.0, last, (params.bootstrap >> end & 1u) == 1u);
+            sum = 0.0;
         }
-        if (end != RUNNING) { sum = 0.0; }
         let now = value[at] * scale[1] + scale[0];
         sum = reward[at] + params.gamma * after - now + params.gamma * params.lambda * sum;
         advantage[at] = sum;

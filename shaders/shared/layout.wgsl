@@ -4,7 +4,9 @@ const POSE = 15u;        // pose feature c
 const TRAJECTORY = 12u;  // trajectory feature t, the action
 const FEATURE = 27u;     // c then t
 const QUADS = 7u;        // vec4s of a padded feature row
-const OBSERVATION = 17u; // c, then the target in the character frame
+const GOAL = 17u;        // c, then the target in the character frame: what every task observes
+const CELLS = 16u;       // an obstacle map is CELLS x CELLS cells
+const MAPS = 2u;         // now, and at the previous step
 const GOAL_SCALE = 0.2;  // the target in the observation: metres times this
 
 // real[field * envs + env]
@@ -22,12 +24,27 @@ const REALS = 9u;
 // whole[field * envs + env]
 const FRAME = 0u;     // database frame now shown
 const AGE = 1u;       // steps of the running episode
-const EPISODES = 2u;  // ended since the last tally
-const SUCCESSES = 3u;
-const LENGTHS = 4u;   // their steps
-const WHOLES = 5u;
+const LIMIT = 2u;     // steps after which the running episode is truncated
+const HITS = 3u;      // asked-for positions of this step that lie in an obstacle
+const STRUCK = 4u;    // 1 if this step ran into an obstacle
+const EPISODES = 5u;  // ended since the last tally, and how
+const SUCCESSES = 6u;
+const COLLISIONS = 7u;
+const TRUNCATIONS = 8u;
+const LENGTHS = 9u;   // their steps
+const WHOLES = 10u;
+
+// boxes[(env * BOX + field) * count + slot], the obstacles' axis-aligned boxes
+const BOX_X = 0u;     // centre, m
+const BOX_Z = 1u;
+const HALF_X = 2u;    // half sides, m
+const HALF_Z = 3u;
+const BOX = 4u;
+// drift[(env * DRIFT + axis) * count + slot], their velocities, m/s
+const DRIFT = 2u;
 
 // How a step ends.
 const RUNNING = 0u;
-const REACHED = 1u;   // terminal
-const TRUNCATED = 2u; // out of steps: bootstrapped, not terminal
+const REACHED = 1u;
+const TRUNCATED = 2u; // out of steps
+const COLLIDED = 3u;

@@ -1,39 +1,57 @@
-// What the policy sees: the normalised pose feature of the frame now shown, and the target in
-// the character frame. One invocation an environment.
+// What the policy sees: the normalised pose feature of the frame now shown, the target in the
+// character frame and, where there are obstacles, the two maps, channels last. `rows` invocations
+// an environment: one for each row of its maps, or 1 without maps; the first writes the rest too.
 //
 // features     [frames][4 * QUADS]   normalised features, padded with zeros
 // real         [REALS][envs]
 // whole        [WHOLES][envs]
-// ended        [.. + envs]           read from `offset` on; only rows that ended like `only` are
-//                                    written, or all of them if `only` is RUNNING
-// observation  [envs][OBSERVATION]
+// ended        [.. + envs]           read from `offset` on; only rows that ended in one of the ways
+//                                    of `only` (bits, 1 << end) are written
+// maps         [envs][MAPS][CELLS]   see sense
+// observation  [.. + envs][width]    written from `to` on; width is GOAL + rows * CELLS * MAPS with
+//                                    maps, else GOAL
 
 #import layout
 #import math
 
 struct Params {
     envs: u32,
+    rows: u32,
+    width: u32,
     offset: u32,
     only: u32,
+    to: u32,
 }
 
 @group(0) @binding(0) var<storage, read> features: array<f32>;
 @group(0) @binding(1) var<storage, read> real: array<f32>;
 @group(0) @binding(2) var<storage, read> whole: array<u32>;
 @group(0) @binding(3) var<storage, read> ended: array<u32>;
-@group(0) @binding(4) var<storage, read_write> observation: array<f32>;
-@group(0) @binding(5) var<uniform> params: Params;
+@group(0) @binding(4) var<storage, read> maps: array<u32>;
+@group(0) @binding(5) var<storage, read_write> observation: array<f32>;
+@group(0) @binding(6) var<uniform> params: Params;
 
 @compute @workgroup_size(64)
 fn observe(@builtin(global_invocation_id) id: vec3u) {
-    let env = id.x;
+    let env = id.x / params.rows;
+    let row = id.x % params.rows;
     let envs = params.envs;
     if (env >= envs) { return; }
-    if (params.only != RUNNING && ended[params.offset + env] != params.only) { return; }
-    let row = whole[FRAME * envs + env] * 4u * QUADS;
-    let out = env * OBSERVATION;
+    if ((params.only >> ended[params.offset + env] & 1u) == 0u) { return; }
+    let out = (params.to + env) * params.width;
+    if (params.width > GOAL) {
+        let now = maps[env * MAPS * CELLS + row];
+        let previous = maps[(env * MAPS + 1u) * CELLS + row];
+        for (var column = 0u; column < CELLS; column++) {
+            let cell = out + GOAL + (row * CELLS + column) * MAPS;
+            observation[cell] = f32(now >> column & 1u);
+            observation[cell + 1u] = f32(previous >> column & 1u);
+        }
+    }
+    if (row > 0u) { return; }
+    let feature = whole[FRAME * envs + env] * 4u * QUADS;
     for (var i = 0u; i < POSE; i++) {
-        observation[out + i] = features[row + i];
+        observation[out + i] = features[feature + i];
     }
     let heading = vec2f(real[HEADING_X * envs + env], real[HEADING_Z * envs + env]);
     let offset = vec2f(

@@ -2,34 +2,50 @@
 // One invocation an environment.
 //
 // candidates  [candidates]       database frame of every search candidate
-// ended       [.. + envs]        RUNNING, REACHED or TRUNCATED, read from `offset` on
+// ended       [.. + envs]        read from `offset` on
+// boxes       [envs][BOX][count]
 // real        [REALS][envs]      see layout
 // whole       [WHOLES][envs]
 
 #import layout
+#import obstacles
 #import rng
 
 struct Params {
     envs: u32,
     candidates: u32,
+    count: u32,
     seed: u32,
     clock: u32,
     offset: u32,
     everywhere: u32,
+    max_steps: u32,
     spread: u32,
     half_side: f32,
     reach: f32,
+    clear: u32,
 }
 
 @group(0) @binding(0) var<storage, read> candidates: array<u32>;
 @group(0) @binding(1) var<storage, read> ended: array<u32>;
-@group(0) @binding(2) var<storage, read_write> real: array<f32>;
-@group(0) @binding(3) var<storage, read_write> whole: array<u32>;
-@group(0) @binding(4) var<uniform> params: Params;
+@group(0) @binding(2) var<storage, read> boxes: array<f32>;
+@group(0) @binding(3) var<storage, read_write> real: array<f32>;
+@group(0) @binding(4) var<storage, read_write> whole: array<u32>;
+@group(0) @binding(5) var<uniform> params: Params;
 
 const START = 0u;   // random streams
 const TARGET = 1u;
-const DRAWS = 16u;
+const DRAWS = 32u;
+
+fn obstructed(point: vec2f, env: u32) -> bool {
+    let count = params.count;
+    for (var slot = 0u; slot < count; slot++) {
+        let i = env * BOX * count + slot;
+        let half = vec2f(boxes[i + HALF_X * count], boxes[i + HALF_Z * count]);
+        if (inside(point, vec2f(boxes[i], boxes[i + count]), half)) { return true; }
+    }
+    return false;
+}
 
 @compute @workgroup_size(64)
 fn reset(@builtin(global_invocation_id) id: vec3u) {
@@ -39,8 +55,9 @@ fn reset(@builtin(global_invocation_id) id: vec3u) {
     if (params.everywhere == 0u && ended[params.offset + env] == RUNNING) { return; }
     let start = random4(params.seed, env, params.clock, START);
     whole[FRAME * envs + env] = candidates[index_below(start.x, params.candidates)];
-    // At the very start ages are spread, so that not all episodes are truncated at once.
-    whole[AGE * envs + env] = index_below(start.y, params.spread);
+    whole[AGE * envs + env] = 0u;
+    // At the very start limits are spread, so that not all episodes are truncated at once.
+    whole[LIMIT * envs + env] = params.max_steps - index_below(start.y, params.spread);
 
     // A normalised pair of Gaussians points everywhere alike.
     let east = gaussian(random4(params.seed, env, params.clock, START + 2u));
@@ -52,12 +69,14 @@ fn reset(@builtin(global_invocation_id) id: vec3u) {
     real[HEADING_X * envs + env] = heading.x;
     real[HEADING_Z * envs + env] = heading.y;
 
-    // Uniform in the square, drawn again while within reach; the corner after DRAWS tries.
+    // Uniform in the square, drawn again while within reach, or in an obstacle if it shall be
+    // clear; the corner after DRAWS tries.
     var target_at = vec2f(params.half_side);
     for (var draw = 0u; draw < DRAWS; draw++) {
         let bits = random4(params.seed, env, params.clock, TARGET + 4u * (draw + 1u));
         let tried = (2.0 * vec2f(uniform01(bits.x), uniform01(bits.y)) - 1.0) * params.half_side;
-        if (dot(tried, tried) > params.reach * params.reach) {
+        let far = dot(tried, tried) > params.reach * params.reach;
+        if (far && (params.clear == 0u || !obstructed(tried, env))) {
             target_at = tried;
             break;
         }

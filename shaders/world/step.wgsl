@@ -1,5 +1,6 @@
 // Plays six frames from the matched candidate, moves the character, rewards and ends.
-// One invocation an environment. Paper: equation 3, and +bonus on arrival (section 3).
+// One invocation an environment. Paper: equations 3 and 4, and the bonus on arrival; the weights
+// choose among them and their readings.
 //
 // candidates  [candidates]      database frame of every candidate
 // matched     [envs]            candidate found by the search
@@ -16,9 +17,13 @@
 struct Params {
     envs: u32,
     offset: u32,
-    max_steps: u32,
     reach: f32,
+    near: f32,
+    progress: f32,
+    clear: f32,
+    shift: f32,
     bonus: f32,
+    crash: f32,
 }
 
 @group(0) @binding(0) var<storage, read> candidates: array<u32>;
@@ -43,7 +48,8 @@ fn step(@builtin(global_invocation_id) id: vec3u) {
     let turned = to_world(vec2f(motion[5u * candidate + 2u], motion[5u * candidate + 3u]), heading);
     // Rounding would let the heading's length drift over thousands of steps.
     let facing = turned / sqrt(dot(turned, turned));
-    let at = vec2f(real[X * envs + env], real[Z * envs + env]) + moved;
+    let before = vec2f(real[X * envs + env], real[Z * envs + env]);
+    let at = before + moved;
     real[X * envs + env] = at.x;
     real[Z * envs + env] = at.y;
     real[HEADING_X * envs + env] = facing.x;
@@ -53,14 +59,20 @@ fn step(@builtin(global_invocation_id) id: vec3u) {
 
     let age = whole[AGE * envs + env] + 1u;
     whole[AGE * envs + env] = age;
-    let to_target = vec2f(real[TARGET_X * envs + env], real[TARGET_Z * envs + env]) - at;
-    let distance = sqrt(dot(to_target, to_target));
+    let goal = vec2f(real[TARGET_X * envs + env], real[TARGET_Z * envs + env]);
+    let distance = sqrt(dot(goal - at, goal - at));
+    let approached = sqrt(dot(goal - before, goal - before)) - distance;
+    let hits = f32(whole[HITS * envs + env]);
+    var gained = params.near * exp(-distance) + params.progress * approached
+        + params.clear * (exp(-hits) - params.shift);
     var end = RUNNING;
-    var gained = exp(-distance);
-    if (distance <= params.reach) {
+    if (whole[STRUCK * envs + env] == 1u) {
+        end = COLLIDED;
+        gained += params.crash;
+    } else if (distance <= params.reach) {
         end = REACHED;
         gained += params.bonus;
-    } else if (age >= params.max_steps) {
+    } else if (age >= whole[LIMIT * envs + env]) {
         end = TRUNCATED;
     }
     reward[params.offset + env] = gained;
@@ -71,6 +83,8 @@ fn step(@builtin(global_invocation_id) id: vec3u) {
         real[RETURNS * envs + env] += total;
         whole[EPISODES * envs + env] += 1u;
         whole[SUCCESSES * envs + env] += u32(end == REACHED);
+        whole[COLLISIONS * envs + env] += u32(end == COLLIDED);
+        whole[TRUNCATIONS * envs + env] += u32(end == TRUNCATED);
         whole[LENGTHS * envs + env] += age;
     }
 }

@@ -3,7 +3,7 @@
 //
 // real   [REALS][envs]
 // whole  [WHOLES][envs]
-// sums   [4]   episodes, successes, steps, summed return
+// sums   [6]   episodes, successes, collisions, truncations, steps, summed return
 
 #import layout
 
@@ -18,21 +18,23 @@ struct Params {
 
 const LANES = 64u;
 
-var<workgroup> counts: array<vec3u, 64>;
+const COUNTS = 5u; // EPISODES to LENGTHS
+
+var<workgroup> counts: array<array<u32, 5>, 64>;
 var<workgroup> returns: array<f32, 64>;
 
 @compute @workgroup_size(64)
 fn tally(@builtin(local_invocation_id) id: vec3u) {
     let lane = id.x;
     let envs = params.envs;
-    var count = vec3u(0u);
+    var count = array<u32, 5>();
     var total = 0.0;
     for (var env = lane; env < envs; env += LANES) {
-        count += vec3u(whole[EPISODES * envs + env], whole[SUCCESSES * envs + env], whole[LENGTHS * envs + env]);
+        for (var i = 0u; i < COUNTS; i++) {
+            count[i] += whole[(EPISODES + i) * envs + env];
+            whole[(EPISODES + i) * envs + env] = 0u;
+        }
         total += real[RETURNS * envs + env];
-        whole[EPISODES * envs + env] = 0u;
-        whole[SUCCESSES * envs + env] = 0u;
-        whole[LENGTHS * envs + env] = 0u;
         real[RETURNS * envs + env] = 0.0;
     }
     counts[lane] = count;
@@ -40,15 +42,13 @@ fn tally(@builtin(local_invocation_id) id: vec3u) {
     workgroupBarrier();
     for (var half = LANES / 2u; half > 0u; half /= 2u) {
         if (lane < half) {
-            counts[lane] += counts[lane + half];
+            for (var i = 0u; i < COUNTS; i++) { counts[lane][i] += counts[lane + half][i]; }
             returns[lane] += returns[lane + half];
         }
         workgroupBarrier();
     }
     if (lane == 0u) {
-        sums[0] = f32(counts[0].x);
-        sums[1] = f32(counts[0].y);
-        sums[2] = f32(counts[0].z);
-        sums[3] = returns[0];
+        for (var i = 0u; i < COUNTS; i++) { sums[i] = f32(counts[0][i]); }
+        sums[COUNTS] = returns[0];
     }
 }

@@ -3,11 +3,14 @@
 use super::Usage;
 use anyhow::{Context, Result};
 use clap::Args;
+use footwork::motion::database::Database;
 use footwork::report::table::table;
 use footwork::train::checkpoint::Checkpoint;
+use footwork::train::controller::{Controller, Scripted, Trained};
 use footwork::train::data;
-use footwork::train::evaluate::{Report, Scripted, Trained, evaluate};
+use footwork::train::evaluate::{Report, evaluate, hardest};
 use footwork::train::folder::Folder;
+use footwork::world::{LEVELS, Task};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -42,9 +45,17 @@ impl Eval {
         let (folder, path) = self.locate()?;
         let config = folder.read_config()?;
         let (database, _) = data::load(config.data.as_deref(), config.weights)?;
-        let checkpoint = Checkpoint::load_for(&path, database.fingerprint)?;
-        let (database, task) = (Arc::new(database), checkpoint.header.plane);
-        let trained = evaluate(&Trained::from(&checkpoint), &database, task, self.episodes)?;
+        let checkpoint = Checkpoint::load_for(&path, &config.task, database.fingerprint)?;
+        let (database, task) = (Arc::new(database), checkpoint.header.task);
+        let policy = Trained::from(&checkpoint);
+        let levels = match task {
+            Task::Plane(_) => Vec::new(),
+            Task::Obstacles(_) => levels(&policy, &database, task, self.episodes)?,
+        };
+        let trained = match levels.last() {
+            Some(hardest) => hardest.clone(),
+            None => hardest(&policy, &database, task, self.episodes)?,
+        };
         let mut baseline = Vec::new();
         if self.baseline {
             for speed in SPEEDS {
@@ -52,11 +63,11 @@ impl Eval {
                     database: &database,
                     speed,
                 };
-                baseline.push((speed, evaluate(&scripted, &database, task, self.episodes)?));
+                baseline.push((speed, hardest(&scripted, &database, task, self.episodes)?));
             }
         }
         match self.json {
-            true => print_json(&trained, &baseline),
+            true => print_json(&trained, &baseline, &levels),
             false => {
                 println!(
                     "{} at {} steps, {} episodes",
@@ -64,6 +75,7 @@ impl Eval {
                     checkpoint.header.steps,
                     self.episodes
                 );
+                print_levels(&levels);
                 print_table(&trained, &baseline);
                 Ok(())
             }
@@ -89,7 +101,19 @@ impl Eval {
     }
 }
 
-fn print_json(trained: &Report, baseline: &[(f32, Report)]) -> Result<()> {
+/// Reports of all levels, the hardest last.
+fn levels(
+    policy: &dyn Controller,
+    database: &Arc<Database>,
+    task: Task,
+    episodes: usize,
+) -> Result<Vec<Report>> {
+    (0..LEVELS)
+        .map(|level| evaluate(policy, database, task, level, episodes))
+        .collect()
+}
+
+fn print_json(trained: &Report, baseline: &[(f32, Report)], levels: &[Report]) -> Result<()> {
     let mut object = serde_json::to_value(trained)?;
     if !baseline.is_empty() {
         let rows: Result<Vec<_>, serde_json::Error> = baseline
@@ -102,8 +126,50 @@ fn print_json(trained: &Report, baseline: &[(f32, Report)]) -> Result<()> {
             .collect();
         object["baseline"] = rows?.into();
     }
+    if !levels.is_empty() {
+        let rows = levels.iter().enumerate().map(|(level, report)| {
+            serde_json::json!({
+                "level": level,
+                "success": report.success,
+                "collision": report.collision,
+                "loiter": report.loiter,
+                "time_to_target_mean_s": report.time_to_target_mean_s,
+                "episode_length_mean_s": report.episode_length_mean_s,
+            })
+        });
+        object["levels"] = rows.collect();
+    }
     println!("{object}");
     Ok(())
+}
+
+fn print_levels(levels: &[Report]) {
+    if levels.is_empty() {
+        return;
+    }
+    let headers = [
+        "level",
+        "success %",
+        "collision %",
+        "loiter %",
+        "time s",
+        "episode s",
+    ];
+    let rows: Vec<_> = levels
+        .iter()
+        .enumerate()
+        .map(|(level, report)| {
+            vec![
+                level.to_string(),
+                format!("{:.1}", 100.0 * report.success),
+                format!("{:.1}", 100.0 * report.collision),
+                format!("{:.1}", 100.0 * report.loiter),
+                format!("{:.2}", report.time_to_target_mean_s),
+                format!("{:.2}", report.episode_length_mean_s),
+            ]
+        })
+        .collect();
+    println!("{}", table(&headers, &rows));
 }
 
 fn print_table(trained: &Report, baseline: &[(f32, Report)]) {
@@ -124,7 +190,9 @@ fn print_table(trained: &Report, baseline: &[(f32, Report)]) {
             format!("{:.2}", report.time_to_target_p95_s),
             format!("{:.2}", report.path_ratio),
             format!("{:.2}", report.mean_speed),
-            format!("{:.2}", report.turn_delay_mean_s),
+            report
+                .turn_delay_mean_s
+                .map_or("-".into(), |delay| format!("{delay:.2}")),
         ]
     };
     let mut rows = vec![row("policy".into(), trained)];

@@ -1,5 +1,6 @@
 //! One file a subcommand.
 
+mod ablate;
 mod data;
 mod eval;
 mod train;
@@ -21,7 +22,10 @@ struct Cli {
 enum Command {
     /// Train a policy
     #[command(subcommand)]
-    Train(train::Task),
+    Train(train::Train),
+    /// Train a task with and without the parts of its method
+    #[command(subcommand)]
+    Ablate(ablate::Ablate),
     /// Judge a trained policy on a fixed set of episodes
     Eval(eval::Eval),
     /// Import, synthesise and inspect motion
@@ -37,6 +41,7 @@ pub struct Usage(pub String);
 pub fn run() -> Result<()> {
     match Cli::parse().command {
         Command::Train(task) => task.run(),
+        Command::Ablate(ablate) => ablate.run(),
         Command::Eval(eval) => eval.run(),
         Command::Data(data) => data.run(),
     }

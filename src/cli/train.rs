@@ -6,22 +6,67 @@ use clap::{Args, Subcommand};
 use footwork::gpu::{Choice, Device};
 use footwork::motion::database::Database;
 use footwork::train::checkpoint::Checkpoint;
-use footwork::train::config::{Config, Preset};
+use footwork::train::config::{Config, Kind, Preset};
 use footwork::train::data;
 use footwork::train::folder::Folder;
-use footwork::train::trainer::{TASK, train};
+use footwork::train::trainer::train;
+use footwork::world::Task;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 #[derive(Subcommand)]
-pub enum Task {
+pub enum Train {
     /// Reach a target on an empty plane
-    Plane(Plane),
+    Plane(Options),
+    /// Reach a target among 100 moving obstacles
+    Obstacles(Obstacles),
 }
 
 #[derive(Args)]
-pub struct Plane {
+pub struct Obstacles {
+    #[command(flatten)]
+    options: Options,
+    /// Do not reward asking for positions outside obstacles
+    #[arg(long, conflicts_with = "resume")]
+    no_hit_reward: bool,
+    /// Train on the hardest level from the start
+    #[arg(long, conflicts_with = "resume")]
+    no_curriculum: bool,
+    /// Reward for reaching the target [default: 10]
+    #[arg(
+        long,
+        value_name = "REWARD",
+        conflicts_with = "resume",
+        allow_negative_numbers = true
+    )]
+    success_bonus: Option<f32>,
+}
+
+#[derive(Args)]
+pub struct Options {
+    #[command(flatten)]
+    choices: Choices,
+    /// Stop after this time in all, like 90s, 5m or 1h30m; looked at after each update
+    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, allow_hyphen_values = true)]
+    max_time: Option<std::time::Duration>,
+    /// Stop at this share of successful evaluation episodes, like 0.99
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
+    stop_success: Option<f64>,
+    /// The same seed on the same device gives the same result, bit for bit [default: 1]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    seed: Option<u32>,
+    /// The run's folder [default: runs/TASK-N]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Go on with a run as if it had never stopped
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["data", "device", "envs", "seed", "preset", "config", "out"])]
+    resume: Option<PathBuf>,
+}
+
+/// What every kind of training may be asked for.
+#[derive(Args)]
+pub struct Choices {
     /// A folder of BVH files, one BVH file, or a database file [default: synthetic motion]
     #[arg(long, value_name = "DIR|FILE")]
     data: Option<PathBuf>,
@@ -31,65 +76,55 @@ pub struct Plane {
     /// Environments stepped together
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     envs: Option<usize>,
-    /// Stop after this many environment steps in all, resumptions included [default: 1000000]
+    /// Stop after this many environment steps in all, resumptions included [default: 1000000 on
+    /// the plane, 3000000 among obstacles]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     steps: Option<u64>,
-    /// Stop after this time in all, like 90s, 5m or 1h30m; looked at after each update
-    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, allow_hyphen_values = true)]
-    max_time: Option<std::time::Duration>,
-    /// Stop at this share of successful evaluation episodes, like 0.99
-    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
-    stop_success: Option<f64>,
-    /// The same seed on the same device gives the same result (lavapipe: but for last digits)
-    /// [default: 1]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    seed: Option<u32>,
     /// `fast` as measured here, or `paper` with the paper's settings [default: fast]
     #[arg(long, value_enum)]
     preset: Option<Preset>,
     /// A TOML file that changes keys of the preset: see any run's config.toml
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// The run's folder [default: runs/plane-N]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Go on with a run as if it had never stopped
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["data", "device", "envs", "seed", "preset", "config", "out"])]
-    resume: Option<PathBuf>,
 }
 
-impl Task {
+impl Train {
     pub fn run(self) -> Result<()> {
         match self {
-            Task::Plane(plane) => plane.run(),
+            Train::Plane(options) => options.run(Kind::Plane, |_| {}),
+            Train::Obstacles(obstacles) => {
+                let change = |task: &mut Task| {
+                    if let Task::Obstacles(task) = task {
+                        task.hit_reward &= !obstacles.no_hit_reward;
+                        task.curriculum &= !obstacles.no_curriculum;
+                        task.success_bonus = obstacles.success_bonus.unwrap_or(task.success_bonus);
+                    }
+                };
+                obstacles.options.run(Kind::Obstacles, change)
+            }
         }
     }
 }
 
-impl Plane {
-    fn run(self) -> Result<()> {
+impl Options {
+    /// `change` applies the options of one task alone.
+    fn run(&self, kind: Kind, change: impl FnOnce(&mut Task)) -> Result<()> {
         let interrupted = on_interrupt()?;
         let resumed = self.resume.as_deref().map(Folder::open).transpose()?;
         let mut config = match &resumed {
-            Some(folder) => self.limits(folder.read_config()?),
-            None => self.fresh()?,
+            Some(folder) => self.limited(same_task(folder, kind)?),
+            None => self.fresh(kind)?,
         };
-        config.check()?;
-        let device = Device::open(config.device)?;
-        // A resumed run must not change its device because another has appeared.
-        config.device = device.choice();
-        let (database, notes) = data::load(config.data.as_deref(), config.weights)?;
-        for note in notes {
-            eprintln!("note: {note}");
+        if resumed.is_none() {
+            change(&mut config.task);
         }
-        if config.weights != database.weights {
-            eprintln!(
-                "note: the database was made with other weights than asked for; its own hold"
-            );
-            config.weights = database.weights;
-        }
+        let (device, database) = open(&mut config)?;
         let checkpoint = match &resumed {
-            Some(folder) => Some(Checkpoint::load_for(&folder.last()?, database.fingerprint)?),
+            Some(folder) => Some(Checkpoint::load_for(
+                &folder.last()?,
+                &config.task,
+                database.fingerprint,
+            )?),
             None => None,
         };
         if let Some(checkpoint) = &checkpoint {
@@ -102,7 +137,7 @@ impl Plane {
         }
         let folder = match resumed {
             Some(folder) => folder,
-            None => Folder::create(self.out.as_deref(), TASK)?,
+            None => Folder::create(self.out.as_deref(), config.task.name())?,
         };
         let written = folder.write_config(&config);
         written.inspect_err(|_| folder.remove_empty())?;
@@ -110,18 +145,19 @@ impl Plane {
         let summary = train(
             &config,
             &folder,
-            &Arc::new(database),
+            &database,
             &device,
             checkpoint,
             interrupted,
         )?;
         println!(
-            "{} steps in {:.1} s ({:.0} steps/s), stopped by {}: {:.1} % of 1000 episodes reach the target, in {:.2} s on average",
+            "{} steps in {:.1} s ({:.0} steps/s), stopped by {}: {:.1} % of 1000 episodes{} reach the target, in {:.2} s on average",
             summary.steps,
             summary.wall_s,
             summary.steps_per_s,
             summary.stopped_by,
             100.0 * summary.success,
+            summary.level.map_or("", |_| " on the hardest level"),
             summary.time_to_target_mean_s,
         );
         println!(
@@ -130,40 +166,23 @@ impl Plane {
         );
         if summary.stopped_by == "interrupt" {
             println!(
-                "go on with `footwork train plane --resume {}`",
+                "go on with `footwork train {} --resume {}`",
+                config.task.name(),
                 folder.path().display()
             );
         }
         Ok(())
     }
 
-    /// Preset, changed by the file, changed by the options.
-    fn fresh(&self) -> Result<Config> {
-        let preset = self.preset.unwrap_or_default();
-        let mut config = match &self.config {
-            Some(path) => Config::from_file(path, preset)?,
-            None => Config::preset(preset),
-        };
-        if self.preset.is_some_and(|asked| asked != config.preset) {
-            return Err(Usage(format!(
-                "--preset {preset:?} and the configuration's preset {:?} differ: drop one",
-                config.preset
-            ))
-            .into());
-        }
-        config.device = self.device.unwrap_or(config.device);
+    fn fresh(&self, kind: Kind) -> Result<Config> {
+        let mut config = self.choices.config(kind)?;
         config.seed = self.seed.unwrap_or(config.seed);
-        config.ppo.envs = self.envs.unwrap_or(config.ppo.envs);
-        if let Some(data) = self.data.clone().or(config.data.take()) {
-            // A run must find its data again from any folder.
-            config.data = Some(std::path::absolute(&data).unwrap_or(data));
-        }
-        Ok(self.limits(config))
+        Ok(self.limited(config))
     }
 
-    /// What a resumed run may change: when to stop.
-    fn limits(&self, mut config: Config) -> Config {
-        config.steps = self.steps.unwrap_or(config.steps);
+    /// With what a resumed run may change too: when to stop.
+    fn limited(&self, mut config: Config) -> Config {
+        config.steps = self.choices.steps.unwrap_or(config.steps);
         config.max_time_s = self
             .max_time
             .map(|time| time.as_secs_f64())
@@ -173,9 +192,71 @@ impl Plane {
     }
 }
 
+impl Choices {
+    /// Preset, changed by the file, changed by the options.
+    pub fn config(&self, kind: Kind) -> Result<Config> {
+        let preset = self.preset.unwrap_or_default();
+        let mut config = match &self.config {
+            Some(path) => Config::from_file(path, kind, preset)?,
+            None => Config::preset(kind, preset),
+        };
+        if self.preset.is_some_and(|asked| asked != config.preset) {
+            return Err(Usage(format!(
+                "--preset {preset:?} and the configuration's preset {:?} differ: drop one",
+                config.preset
+            ))
+            .into());
+        }
+        config.device = self.device.unwrap_or(config.device);
+        config.ppo.envs = self.envs.unwrap_or(config.ppo.envs);
+        config.steps = self.steps.unwrap_or(config.steps);
+        if let Some(data) = self.data.clone().or(config.data.take()) {
+            // A run must find its data again from any folder.
+            config.data = Some(std::path::absolute(&data).unwrap_or(data));
+        }
+        Ok(config)
+    }
+}
+
+/// Checks a configuration and opens its device and data; what they turn out to be goes into it.
+pub fn open(config: &mut Config) -> Result<(Device, Arc<Database>)> {
+    config.check()?;
+    let device = Device::open(config.device)?;
+    // A resumed run must not change its device because another has appeared.
+    config.device = device.choice();
+    let (database, notes) = data::load(config.data.as_deref(), config.weights)?;
+    for note in notes {
+        eprintln!("note: {note}");
+    }
+    if config.weights != database.weights {
+        eprintln!("note: the database was made with other weights than asked for; its own hold");
+        config.weights = database.weights;
+    }
+    Ok((device, Arc::new(database)))
+}
+
+/// The configuration of a run that goes on with the task it has.
+fn same_task(folder: &Folder, kind: Kind) -> Result<Config> {
+    let config = folder.read_config()?;
+    let asked = match kind {
+        Kind::Plane => "plane",
+        Kind::Obstacles => "obstacles",
+    };
+    let found = config.task.name();
+    if found != asked {
+        return Err(Usage(format!(
+            "{} is a run of the task `{found}`, not of `{asked}`: go on with `footwork train {found} --resume {0}`",
+            folder.path().display()
+        ))
+        .into());
+    }
+    Ok(config)
+}
+
 fn introduce(config: &Config, folder: &Folder, database: &Database, device: &Device) {
     eprintln!(
-        "training `{TASK}` on {}: {} environments, {:.1} minutes of motion, {} candidates; run folder {}",
+        "training `{}` on {}: {} environments, {:.1} minutes of motion, {} candidates; run folder {}",
+        config.task.name(),
         device.name(),
         config.ppo.envs,
         database.minutes(),
@@ -185,7 +266,7 @@ fn introduce(config: &Config, folder: &Folder, database: &Database, device: &Dev
 }
 
 /// The first Ctrl-C asks the run to save and stop, the second ends the program.
-fn on_interrupt() -> Result<&'static AtomicBool> {
+pub fn on_interrupt() -> Result<&'static AtomicBool> {
     static INTERRUPTED: AtomicBool = AtomicBool::new(false);
     ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {

@@ -11,6 +11,10 @@ crate::shader_params! {
         pub steps: u32,
         pub gamma: f32,
         pub lambda: f32,
+        /// Ends after which the value of the last real state goes on, `1 << end`.
+        pub bootstrap: u32,
+        /// Steps of `final_value`: 1 if no environment has two bootstrapped ends in the rollout.
+        pub final_steps: u32,
     }
 }
 
@@ -57,10 +61,10 @@ pub fn twin(
         let (mut after, mut sum) = (real(next_value[env]), 0.0);
         for step in (0..params.steps as usize).rev() {
             let at = step * envs + env;
-            match ended[at] {
-                end::REACHED => (after, sum) = (0.0, 0.0),
-                end::TRUNCATED => (after, sum) = (real(final_value[env]), 0.0),
-                _ => {}
+            if ended[at] != end::RUNNING {
+                let last = final_value[if params.final_steps == 1 { env } else { at }];
+                let goes_on = params.bootstrap >> ended[at] & 1 == 1;
+                (after, sum) = (if goes_on { real(last) } else { 0.0 }, 0.0);
             }
             let now = real(value[at]);
             sum = reward[at] + params.gamma * after - now + params.gamma * params.lambda * sum;

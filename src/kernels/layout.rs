@@ -5,8 +5,17 @@ use crate::gpu::shader::step::constants as wgsl;
 use crate::motion::database::PADDED;
 use crate::motion::features::{FEATURE, PLAYED, POSE, TRAJECTORY};
 
-/// Width of an observation: the pose feature and the target in the character frame.
-pub const OBSERVATION: usize = POSE + 2;
+/// What every task observes: the pose feature and the target in the character frame.
+pub const GOAL: usize = POSE + 2;
+/// An obstacle map is so many cells wide and long.
+pub const CELLS: usize = 16;
+/// Side of a cell, m.
+pub const CELL: f32 = 0.375;
+/// Maps a character sees: now, and at the previous step.
+pub const MAPS: usize = 2;
+/// Numbers of an observation's maps, `[row][column][map]`: rows from behind to ahead, columns from
+/// right to left in the character frame.
+pub const SENSED: usize = CELLS * CELLS * MAPS;
 /// The target in an observation is metres times this.
 pub const GOAL_SCALE: f32 = 0.2;
 
@@ -36,26 +45,52 @@ pub mod whole {
     pub const FRAME: usize = 0;
     /// Steps of the running episode.
     pub const AGE: usize = 1;
-    /// Episodes ended since the last tally, those that succeeded, and their steps.
-    pub const EPISODES: usize = 2;
-    pub const SUCCESSES: usize = 3;
-    pub const LENGTHS: usize = 4;
-    pub const FIELDS: usize = 5;
+    /// Steps after which the running episode is truncated.
+    pub const LIMIT: usize = 2;
+    /// Asked-for positions of the last step that lay in an obstacle.
+    pub const HITS: usize = 3;
+    /// 1 if the last step ran into an obstacle.
+    pub const STRUCK: usize = 4;
+    /// Episodes ended since the last tally, how they ended, and their steps.
+    pub const EPISODES: usize = 5;
+    pub const SUCCESSES: usize = 6;
+    pub const COLLISIONS: usize = 7;
+    pub const TRUNCATIONS: usize = 8;
+    pub const LENGTHS: usize = 9;
+    pub const FIELDS: usize = 10;
 }
+
+/// Fields of the obstacles, `boxes[(env * FIELDS + field) * count + slot]`: axis-aligned boxes.
+pub mod boxes {
+    /// Centre, m.
+    pub const X: usize = 0;
+    pub const Z: usize = 1;
+    /// Half sides, m.
+    pub const HALF_X: usize = 2;
+    pub const HALF_Z: usize = 3;
+    pub const FIELDS: usize = 4;
+}
+
+/// Axes of the obstacles' velocities, m/s, `drift[(env * AXES + axis) * count + slot]`.
+pub const AXES: usize = 2;
 
 /// How a step ends.
 pub mod end {
     pub const RUNNING: u32 = 0;
-    /// The target was reached: terminal.
     pub const REACHED: u32 = 1;
     /// Out of steps: not terminal, bootstrapped with the value of the last real state.
     pub const TRUNCATED: u32 = 2;
+    /// Ran into an obstacle.
+    pub const COLLIDED: u32 = 3;
+    /// The set of all of them; a set has the bit `1 << end` for each.
+    pub const ANY: u32 = u32::MAX;
 }
 
 const _: () = {
     assert!(wgsl::POSE as usize == POSE && wgsl::TRAJECTORY as usize == TRAJECTORY);
     assert!(wgsl::FEATURE as usize == FEATURE && wgsl::QUADS as usize * 4 == PADDED);
-    assert!(wgsl::OBSERVATION as usize == OBSERVATION && wgsl::PLAYED as usize == PLAYED);
+    assert!(wgsl::GOAL as usize == GOAL && wgsl::PLAYED as usize == PLAYED);
+    assert!(wgsl::CELLS as usize == CELLS && wgsl::MAPS as usize == MAPS);
     assert!(wgsl::X as usize == real::X && wgsl::Z as usize == real::Z);
     assert!(
         wgsl::HEADING_X as usize == real::HEADING_X && wgsl::HEADING_Z as usize == real::HEADING_Z
@@ -68,6 +103,13 @@ const _: () = {
         wgsl::EPISODES as usize == whole::EPISODES && wgsl::SUCCESSES as usize == whole::SUCCESSES
     );
     assert!(wgsl::LENGTHS as usize == whole::LENGTHS && wgsl::WHOLES as usize == whole::FIELDS);
+    assert!(wgsl::LIMIT as usize == whole::LIMIT && wgsl::HITS as usize == whole::HITS);
+    assert!(wgsl::STRUCK as usize == whole::STRUCK);
+    assert!(wgsl::COLLISIONS as usize == whole::COLLISIONS);
+    assert!(wgsl::TRUNCATIONS as usize == whole::TRUNCATIONS);
+    assert!(wgsl::BOX_X as usize == boxes::X && wgsl::BOX_Z as usize == boxes::Z);
+    assert!(wgsl::HALF_X as usize == boxes::HALF_X && wgsl::HALF_Z as usize == boxes::HALF_Z);
+    assert!(wgsl::BOX as usize == boxes::FIELDS && wgsl::DRIFT as usize == AXES);
     assert!(wgsl::RUNNING == end::RUNNING && wgsl::REACHED == end::REACHED);
-    assert!(wgsl::TRUNCATED == end::TRUNCATED);
+    assert!(wgsl::TRUNCATED == end::TRUNCATED && wgsl::COLLIDED == end::COLLIDED);
 };

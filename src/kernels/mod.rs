@@ -2,20 +2,28 @@
 //! order of arguments. The twin is the shader's oracle and the CPU backend's kernel.
 //!
 //! A step of the world, in order:
-//! [`observe`] what the policy sees, [`act`] draw its action, [`query`] put the question to the
-//! database, [`search_wide`] or [`search_tile`] and [`search_exact`] find the nearest candidate,
-//! [`mod@step`] play it and reward, [`reset`] where an episode ended. After a rollout [`gae`] judges
-//! the actions and [`tally`] sums up the episodes.
+//! [`observe`] what the policy sees, [`act`] draw its action, [`hits`] count what it asks for in
+//! obstacles, [`query`] put the question to the database, [`search_wide`] or [`search_tile`] and
+//! [`search_exact`] find the nearest candidate, [`collide`] see what is in its way, [`wander`] move
+//! the obstacles, [`mod@step`] play it and reward, [`sense`] map the obstacles; where an episode
+//! ended [`scatter`] draws new obstacles and [`reset`] starts another. After a rollout [`gae`]
+//! judges the actions and [`tally`] sums up the episodes.
 
 pub mod act;
+pub mod collide;
 pub mod gae;
+pub mod hits;
 pub mod layout;
 pub mod observe;
+pub mod obstacles;
 pub mod query;
 pub mod reset;
 pub mod rng;
+pub mod scatter;
 pub mod search_exact;
 pub mod search_tile;
 pub mod search_wide;
+pub mod sense;
 pub mod step;
 pub mod tally;
+pub mod wander;

@@ -1,6 +1,6 @@
 //! What the policy sees. Shader: `shaders/world/observe.wgsl`.
 
-use super::layout::{GOAL_SCALE, OBSERVATION, end, real, whole};
+use super::layout::{CELLS, GOAL, GOAL_SCALE, MAPS, real, whole};
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::database::PADDED;
@@ -10,10 +10,16 @@ use crate::motion::frame::to_local;
 crate::shader_params! {
     pub struct Params for observe {
         pub envs: u32,
+        /// Rows of an environment's maps; 1 without maps.
+        pub rows: u32,
+        /// Numbers of an observation.
+        pub width: u32,
         /// Where this step's ends begin in `ended`.
         pub offset: u32,
-        /// Write only the rows that ended like this; all of them for `RUNNING`.
+        /// Write only the observations of environments that ended in one of these ways, `1 << end`.
         pub only: u32,
+        /// The first observation to write.
+        pub to: u32,
     }
 }
 
@@ -23,14 +29,15 @@ pub fn launch(
     real: &Buffer<f32>,
     whole: &Buffer<u32>,
     ended: &Buffer<u32>,
+    maps: &Buffer<u32>,
     observation: &Buffer<f32>,
     params: &Params,
 ) {
-    let groups = groups(&shader::OBSERVE, params.envs as usize);
+    let groups = groups(&shader::OBSERVE, (params.envs * params.rows) as usize);
     gpu.launch(
         &shader::OBSERVE,
         groups,
-        &[features, real, whole, ended, observation],
+        &[features, real, whole, ended, maps, observation],
         params,
     );
 }
@@ -40,16 +47,18 @@ pub fn twin(
     real: &[f32],
     whole: &[u32],
     ended: &[u32],
+    maps: &[u32],
     observation: &mut [f32],
     params: &Params,
 ) {
     let envs = params.envs as usize;
     for (env, row) in observation
-        .chunks_exact_mut(OBSERVATION)
-        .enumerate()
+        .chunks_exact_mut(params.width as usize)
+        .skip(params.to as usize)
         .take(envs)
+        .enumerate()
     {
-        if params.only != end::RUNNING && ended[params.offset as usize + env] != params.only {
+        if params.only >> ended[params.offset as usize + env] & 1 == 0 {
             continue;
         }
         let at = |field: usize| real[field * envs + env];
@@ -62,5 +71,12 @@ pub fn twin(
         let goal = to_local(offset, [at(real::HEADING_X), at(real::HEADING_Z)]);
         row[POSE] = goal[0] * GOAL_SCALE;
         row[POSE + 1] = goal[1] * GOAL_SCALE;
+        if row.len() > GOAL {
+            let (now, previous) = maps[env * MAPS * CELLS..][..MAPS * CELLS].split_at(CELLS);
+            for (cell, seen) in row[GOAL..].chunks_exact_mut(MAPS).enumerate() {
+                let bit = |map: &[u32]| (map[cell / CELLS] >> (cell % CELLS) & 1) as f32;
+                (seen[0], seen[1]) = (bit(now), bit(previous));
+            }
+        }
     }
 }

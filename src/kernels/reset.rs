@@ -1,6 +1,7 @@
 //! Starts new episodes. Shader: `shaders/world/reset.wgsl`.
 
-use super::layout::{end, real, whole};
+use super::hits::obstructed;
+use super::layout::{boxes, end, real, whole};
 use super::rng::{gaussian, index_below, random4, uniform01};
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};
@@ -9,6 +10,8 @@ crate::shader_params! {
     pub struct Params for reset {
         pub envs: u32,
         pub candidates: u32,
+        /// Obstacles of an environment.
+        pub count: u32,
         pub seed: u32,
         /// Steps of the run so far: the random numbers' counter.
         pub clock: u32,
@@ -16,23 +19,27 @@ crate::shader_params! {
         pub offset: u32,
         /// 1 to start everywhere, whatever `ended` says.
         pub everywhere: u32,
-        /// Episodes start at a random age below this; 0 and 1 mean at age 0.
+        /// Steps after which an episode is truncated, less a random number below `spread`.
+        pub max_steps: u32,
         pub spread: u32,
         /// Half the side of the square of targets around the start, m.
         pub half_side: f32,
         /// Targets are farther than this, m.
         pub reach: f32,
+        /// 1: targets lie in no obstacle.
+        pub clear: u32,
     }
 }
 
 const START: u32 = 0;
 const TARGET: u32 = 1;
-const DRAWS: u32 = 16;
+const DRAWS: u32 = 32;
 
 pub fn launch(
     gpu: &Gpu,
     candidates: &Buffer<u32>,
     ended: &Buffer<u32>,
+    boxes: &Buffer<f32>,
     real: &Buffer<f32>,
     whole: &Buffer<u32>,
     params: &Params,
@@ -40,7 +47,7 @@ pub fn launch(
     gpu.launch(
         &shader::RESET,
         groups(&shader::RESET, params.envs as usize),
-        &[candidates, ended, real, whole],
+        &[candidates, ended, boxes, real, whole],
         params,
     );
 }
@@ -48,6 +55,7 @@ pub fn launch(
 pub fn twin(
     candidates: &[u32],
     ended: &[u32],
+    boxes: &[f32],
     real: &mut [f32],
     whole: &mut [u32],
     params: &Params,
@@ -58,10 +66,11 @@ pub fn twin(
             continue;
         }
         let draw = |stream| random4(params.seed, env as u32, params.clock, stream);
-        let [first, age, ..] = draw(START);
+        let [first, early, ..] = draw(START);
         let start = index_below(first, params.candidates);
         whole[whole::FRAME * envs + env] = candidates[start as usize];
-        whole[whole::AGE * envs + env] = index_below(age, params.spread);
+        whole[whole::AGE * envs + env] = 0;
+        whole[whole::LIMIT * envs + env] = params.max_steps - index_below(early, params.spread);
 
         let (east, north) = (gaussian(draw(START + 2)), gaussian(draw(START + 3)));
         let length = (east * east + north * north).sqrt();
@@ -71,12 +80,17 @@ pub fn twin(
             [0.0, 1.0]
         };
 
+        let count = params.count as usize;
+        let boxes = &boxes[env * boxes::FIELDS * count..][..boxes::FIELDS * count];
         let target = (0..DRAWS)
             .map(|tried| {
                 let bits = draw(TARGET + 4 * (tried + 1));
                 [bits[0], bits[1]].map(|bits| (2.0 * uniform01(bits) - 1.0) * params.half_side)
             })
-            .find(|[x, z]| x * x + z * z > params.reach * params.reach)
+            .find(|&[x, z]| {
+                let far = x * x + z * z > params.reach * params.reach;
+                far && (params.clear == 0 || !obstructed([x, z], boxes, count))
+            })
             .unwrap_or([params.half_side; 2]);
 
         let values = [

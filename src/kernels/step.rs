@@ -12,12 +12,19 @@ crate::shader_params! {
         pub envs: u32,
         /// Where this step's rewards and ends begin.
         pub offset: u32,
-        /// Steps after which an episode is truncated.
-        pub max_steps: u32,
         /// Distance at which the target counts as reached, m.
         pub reach: f32,
+        /// Reward for being near the target: times exp(-distance).
+        pub near: f32,
+        /// Reward a metre nearer to the target.
+        pub progress: f32,
+        /// Reward for asking for clear ground: times exp(-hits) - shift.
+        pub clear: f32,
+        pub shift: f32,
         /// Reward on arrival.
         pub bonus: f32,
+        /// Reward on a collision, not above 0.
+        pub crash: f32,
     }
 }
 
@@ -60,7 +67,8 @@ pub fn twin(
         let moved = to_world(played.moved, heading);
         let turned = to_world(played.turned, heading);
         let length = (turned[0] * turned[0] + turned[1] * turned[1]).sqrt();
-        let at = [real[r(real::X)] + moved[0], real[r(real::Z)] + moved[1]];
+        let before = [real[r(real::X)], real[r(real::Z)]];
+        let at = [before[0] + moved[0], before[1] + moved[1]];
         real[r(real::X)] = at[0];
         real[r(real::Z)] = at[1];
         real[r(real::HEADING_X)] = turned[0] / length;
@@ -70,18 +78,26 @@ pub fn twin(
 
         let age = whole[r(whole::AGE)] + 1;
         whole[r(whole::AGE)] = age;
-        let (dx, dz) = (
-            real[r(real::TARGET_X)] - at[0],
-            real[r(real::TARGET_Z)] - at[1],
-        );
-        let distance = (dx * dx + dz * dz).sqrt();
-        let reached = distance <= params.reach;
-        let end = match reached {
-            true => end::REACHED,
-            false if age >= params.max_steps => end::TRUNCATED,
-            false => end::RUNNING,
+        let goal = [real[r(real::TARGET_X)], real[r(real::TARGET_Z)]];
+        let from = |place: [f32; 2]| {
+            let (dx, dz) = (goal[0] - place[0], goal[1] - place[1]);
+            (dx * dx + dz * dz).sqrt()
         };
-        let gained = (-distance).exp() + if reached { params.bonus } else { 0.0 };
+        let distance = from(at);
+        let approached = from(before) - distance;
+        let hits = whole[r(whole::HITS)] as f32;
+        let walked = params.near * (-distance).exp()
+            + params.progress * approached
+            + params.clear * ((-hits).exp() - params.shift);
+        let (end, gained) = if whole[r(whole::STRUCK)] == 1 {
+            (end::COLLIDED, walked + params.crash)
+        } else if distance <= params.reach {
+            (end::REACHED, walked + params.bonus)
+        } else if age >= whole[r(whole::LIMIT)] {
+            (end::TRUNCATED, walked)
+        } else {
+            (end::RUNNING, walked)
+        };
         reward[offset + env] = gained;
         ended[offset + env] = end;
         let total = real[r(real::RETURN)] + gained;
@@ -89,7 +105,9 @@ pub fn twin(
         if end != end::RUNNING {
             real[r(real::RETURNS)] += total;
             whole[r(whole::EPISODES)] += 1;
-            whole[r(whole::SUCCESSES)] += u32::from(reached);
+            whole[r(whole::SUCCESSES)] += u32::from(end == end::REACHED);
+            whole[r(whole::COLLISIONS)] += u32::from(end == end::COLLIDED);
+            whole[r(whole::TRUNCATIONS)] += u32::from(end == end::TRUNCATED);
             whole[r(whole::LENGTHS)] += age;
         }
     }

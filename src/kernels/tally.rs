@@ -9,7 +9,9 @@ crate::shader_params! {
     }
 }
 
-/// `sums`: episodes, successes, steps, summed return.
+/// Numbers of a tally: episodes, successes, collisions, truncations, steps, summed return.
+pub const SUMS: usize = 6;
+
 pub fn launch(
     gpu: &Gpu,
     real: &Buffer<f32>,
@@ -20,7 +22,7 @@ pub fn launch(
     gpu.launch(&shader::TALLY, [1, 1, 1], &[real, whole, sums], params);
 }
 
-pub fn twin(real: &mut [f32], whole: &mut [u32], sums: &mut [f32; 4], params: &Params) {
+pub fn twin(real: &mut [f32], whole: &mut [u32], sums: &mut [f32; SUMS], params: &Params) {
     let envs = params.envs as usize;
     let mut count = |field: usize| {
         let part = &mut whole[field * envs..(field + 1) * envs];
@@ -32,6 +34,8 @@ pub fn twin(real: &mut [f32], whole: &mut [u32], sums: &mut [f32; 4], params: &P
     *sums = [
         count(whole::EPISODES),
         count(whole::SUCCESSES),
+        count(whole::COLLISIONS),
+        count(whole::TRUNCATIONS),
         count(whole::LENGTHS),
         returns.iter().sum(),
     ];

@@ -93,6 +93,11 @@ impl Normalisation {
         }
     }
 
+    /// Mean, then scale of the trajectory features: `[2][TRAJECTORY]`.
+    pub fn trajectory(&self) -> Vec<f32> {
+        [&self.mean[POSE..], &self.scale[POSE..]].concat()
+    }
+
     pub fn apply(&self, row: &[f32; FEATURE]) -> [f32; FEATURE] {
         std::array::from_fn(|i| (row[i] - self.mean[i]) * self.scale[i])
     }

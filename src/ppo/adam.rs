@@ -65,7 +65,7 @@ impl Adam {
 }
 
 fn clip(gradient: Tensor<1>, max_norm: f64) -> Tensor<1> {
-    let norm = gradient.clone().square().sum().sqrt();
+    let norm = gradient.clone().square().sum_dim(0).sqrt();
     gradient.mul(
         norm.add_scalar(1e-6)
             .recip()

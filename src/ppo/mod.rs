@@ -1,10 +1,11 @@
 //! Proximal policy optimisation (Schulman et al. 2017) in burn's tensors: the same code on the
 //! GPU and on the CPU.
 //!
-//! [`policy`] holds the networks, [`rollout`] lets them act, [`update`] improves them with
+//! [`policy`] holds the networks, [`convolution`] runs their eyes on the CPU, [`rollout`] lets them act, [`update`] improves them with
 //! [`adam`], [`scale`] keeps the critic's targets near one.
 
 pub mod adam;
+pub mod convolution;
 pub mod policy;
 pub mod rollout;
 pub mod scale;
@@ -48,8 +49,7 @@ pub struct Ppo {
     pub max_gradient: f64,
     /// Starting standard deviation of the actions, in normalised units, as a natural logarithm.
     pub log_std: f32,
-    /// Widths of the hidden layers of policy and critic alike.
-    pub hidden: Vec<usize>,
+    pub network: policy::Network,
 }
 
 impl Ppo {

@@ -77,7 +77,7 @@ pub fn collect(
     let values = Values {
         observed: value.clone(),
         next: policy.value(world.observe()),
-        last: policy.value(world.truncated()),
+        last: policy.value(world.last()),
         scale: scale.mean_and_deviation(),
     };
     let (advantage, target) = world.judge(values, config.gamma, config.lambda);

@@ -8,6 +8,7 @@ use super::scale::Scale;
 use crate::kernels::rng::permutation;
 use crate::motion::features::TRAJECTORY;
 use crate::tensors::vector;
+use anyhow::Context;
 use burn::tensor::{Device, Int, Tensor, TensorData};
 use rayon::prelude::*;
 
@@ -57,13 +58,20 @@ impl Losses {
 /// Columns of a packed sample, so that shuffling is one gather: observation, action, mean and
 /// [`SCALARS`].
 const SCALARS: usize = 4;
+/// First random stream of the shuffles.
+const SHUFFLE: u32 = 0x5348_5546;
 const HALF_LOG_TAU: f64 = 0.918_938_533_204_672_7;
 
 impl Learner {
-    pub fn new(config: &Ppo, device: &Device, seed: u32) -> Self {
-        let shape = Shape::new(&config.hidden);
+    /// Learns from observations of `width` numbers.
+    ///
+    /// # Errors
+    /// A filter of the network does not fit the maps.
+    pub fn new(config: &Ppo, width: usize, device: &Device, seed: u32) -> anyhow::Result<Self> {
+        let shape = Shape::new(&config.network, width)
+            .context("a filter of ppo.network.convolutions is larger than what it sees")?;
         let parameters = vector(&shape.init(seed, config.log_std), device);
-        Learner {
+        Ok(Learner {
             adam: Adam::new(shape.parameters(), device),
             scale: Scale::new(device),
             shape,
@@ -75,7 +83,7 @@ impl Learner {
             // Flex runs one tensor operation on one core: two pieces occupy two of them. The number
             // is fixed, so that results do not depend on the machine's cores.
             shards: if *device == Device::flex() { 2 } else { 1 },
-        }
+        })
     }
 
     pub fn policy(&self) -> Policy {
@@ -91,7 +99,7 @@ impl Learner {
         let device = self.parameters.device();
         let mut sums = Vec::new();
         for epoch in 0..config.epochs {
-            let stream = epoch as u32;
+            let stream = SHUFFLE + epoch as u32;
             let order = permutation(self.seed, self.updates as u32, stream, samples);
             let order = order.into_iter().map(|i| i as i32).collect::<Vec<_>>();
             let order = Tensor::<1, Int>::from_data(TensorData::new(order, [samples]), &device);
@@ -221,28 +229,26 @@ fn gradient(
     kl_coefficient: f64,
     length: usize,
 ) -> (Tensor<1>, Tensor<1>) {
-    let leaves = policy.leaves();
     let width = piece.dims()[1];
     let observations = width - 2 * TRAJECTORY - SCALARS;
     let constant = |start: usize, length: usize| piece.clone().narrow(1, start, length);
     let scalar =
         |i: usize| Tensor::from_inner(constant(width - SCALARS + i, 1).squeeze_dim::<1>(1));
-    let observation = Tensor::from_inner(constant(0, observations));
+    let study = policy.study(&constant(0, observations));
     let action = Tensor::from_inner(constant(observations, TRAJECTORY));
     let old_mean = Tensor::from_inner(constant(observations + TRAJECTORY, TRAJECTORY));
     let old_log_std = Tensor::from_inner(old_log_std.clone());
     let (old_log_prob, advantage, target, old_value) = (scalar(0), scalar(1), scalar(2), scalar(3));
 
-    let mean = leaves.mean(observation.clone());
-    let value = leaves.value(observation);
-    let log_std = leaves.log_std.clone();
+    let (mean, value) = (study.mean(), study.value());
+    let log_std = study.log_std.clone();
     let inverse = log_std.clone().neg().exp().unsqueeze::<2>();
 
     let noise = action.sub(mean.clone()).mul(inverse.clone());
     let log_prob = sum_rows(noise.square().mul_scalar(-0.5)).sub(
         log_std
             .clone()
-            .sum()
+            .sum_dim(0)
             .add_scalar(TRAJECTORY as f64 * HALF_LOG_TAU),
     );
     let log_ratio = log_prob.sub(old_log_prob);
@@ -252,7 +258,7 @@ fn gradient(
         .clone()
         .mul(advantage.clone())
         .min_pair(clipped.clone().mul(advantage))
-        .sum()
+        .sum_dim(0)
         .neg();
 
     let error = value.clone().sub(target.clone()).square();
@@ -266,18 +272,18 @@ fn gradient(
     } else {
         error
     };
-    let value_loss = value_loss.sum().mul_scalar(0.5);
+    let value_loss = value_loss.sum_dim(0).mul_scalar(0.5);
 
     let samples = piece.dims()[0] as f64;
     let entropy = log_std
         .clone()
-        .sum()
+        .sum_dim(0)
         .add_scalar(TRAJECTORY as f64 * (0.5 + HALF_LOG_TAU))
         .mul_scalar(samples);
     // KL(old || new) of diagonal Gaussians.
     let moved = old_mean.sub(mean).mul(inverse).square();
     let spread = old_log_std.clone().sub(log_std.clone());
-    let kl = sum_rows(moved.mul_scalar(0.5)).sum().add(
+    let kl = sum_rows(moved.mul_scalar(0.5)).sum_dim(0).add(
         spread
             .clone()
             .mul_scalar(2.0)
@@ -285,7 +291,7 @@ fn gradient(
             .sub_scalar(1.0)
             .mul_scalar(0.5)
             .sub(spread)
-            .sum()
+            .sum_dim(0)
             .mul_scalar(samples),
     );
 
@@ -305,7 +311,7 @@ fn gradient(
         .abs()
         .greater_elem(0.0)
         .float()
-        .sum();
+        .sum_dim(0);
     let losses = vec![
         surrogate.inner(),
         value_loss.inner(),
@@ -313,7 +319,7 @@ fn gradient(
         kl.inner(),
         left,
     ];
-    (leaves.gradient(&gradients), Tensor::cat(losses, 0))
+    (study.gradient(&gradients), Tensor::cat(losses, 0))
 }
 
 fn sum_rows(values: Tensor<2>) -> Tensor<1> {

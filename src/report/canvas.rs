@@ -121,6 +121,28 @@ impl Canvas<'_> {
         drawn(self.backend.draw_rect(corner, opposite, &pen, true))
     }
 
+    /// A filled shape with straight sides; where these cross, the even-odd rule decides.
+    pub fn polygon(
+        &mut self,
+        corners: &[Pixel],
+        colour: RGBColor,
+        opacity: f64,
+    ) -> Result<(), Error> {
+        let corners: Vec<(i32, i32)> = corners.iter().map(|&corner| grid(corner)).collect();
+        let heights = || corners.iter().map(|corner| corner.1);
+        let top = heights().min().unwrap_or(0).max(0);
+        let bottom = heights().max().unwrap_or(0);
+        let bottom = bottom.min(self.backend.get_size().1 as i32);
+        let pen = pen(colour, opacity, 1.0);
+        for row in top..bottom {
+            for ends in crossings(&corners, row).chunks_exact(2) {
+                let (from, to) = ((ends[0], row), (ends[1], row + 1));
+                drawn(self.backend.draw_rect(from, to, &pen, true))?;
+            }
+        }
+        Ok(())
+    }
+
     /// One line of text, `size` pixels high.
     pub fn text(
         &mut self,
@@ -184,6 +206,24 @@ impl Canvas<'_> {
 pub fn text_width(text: &str, size: f64) -> Result<f64, Error> {
     let line = font::line(text, fine(size) as f32)?;
     Ok(f64::from(line.width) / f64::from(FINE))
+}
+
+/// Where the sides of a shape cross the middle of a row of pixels, from the left: the
+/// first pixels whose middle lies beyond.
+fn crossings(corners: &[(i32, i32)], row: i32) -> Vec<i32> {
+    let middle = f64::from(row) + 0.5;
+    let mut crossings: Vec<i32> = corners
+        .iter()
+        .zip(corners.iter().cycle().skip(1))
+        .filter(|(from, to)| (from.1 <= row) != (to.1 <= row))
+        .map(|(from, to)| {
+            let part = (middle - f64::from(from.1)) / f64::from(to.1 - from.1);
+            let x = f64::from(from.0) + part * f64::from(to.0 - from.0);
+            (x - 0.5).ceil() as i32
+        })
+        .collect();
+    crossings.sort_unstable();
+    crossings
 }
 
 fn pen(colour: RGBColor, opacity: f64, width: f64) -> ShapeStyle {

@@ -176,6 +176,21 @@ impl Plot {
     }
 }
 
+/// Sets items of these widths, in pixels, in rows no wider than `room`: for each its left
+/// end and its row.
+pub fn flow(widths: &[f64], gap: f64, room: f64) -> Vec<(f64, usize)> {
+    let (mut left, mut row) = (0.0, 0);
+    let mut places = Vec::with_capacity(widths.len());
+    for width in widths {
+        if left > 0.0 && left + width > room {
+            (left, row) = (0.0, row + 1);
+        }
+        places.push((left, row));
+        left += width + gap;
+    }
+    places
+}
+
 /// At most `count` multiples of 1, 2 or 5 times a power of ten between `min` and `max`.
 pub fn ticks(min: f64, max: f64, count: usize) -> Vec<f64> {
     let rough = (max - min) / count.max(1) as f64;

@@ -5,17 +5,13 @@
 //! The data of a record is one protobuf message `Event`; the few fields needed are
 //! encoded here by hand.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 /// TensorBoard takes any file with "tfevents" in its name for an event file. One fixed
-/// name lets a resumed run find the file that it has to append to.
+/// name lets a resumed run replace the file it began.
 pub const FILE_NAME: &str = "events.out.tfevents.footwork";
-
-/// Length and its checksum before the data, the data's checksum behind it.
-const HEADER: usize = 12;
-const FOOTER: usize = 4;
 
 /// An open event file.
 ///
@@ -48,32 +44,6 @@ impl EventWriter {
         Ok(writer)
     }
 
-    /// Goes on with the event file of the folder `dir`, or starts it if there is none.
-    ///
-    /// A record that was cut off when the program was killed is removed first, for
-    /// TensorBoard stops reading at a damaged one.
-    ///
-    /// # Errors
-    ///
-    /// If the file cannot be read or written, or is no event file.
-    pub fn append(dir: &Path, wall_time_s: f64) -> io::Result<Self> {
-        let path = dir.join(FILE_NAME);
-        if !path.exists() {
-            return Self::create(dir, wall_time_s);
-        }
-        let name = path.display().to_string();
-        let mut file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .open(&path)
-            .map_err(|error| failure(&name, &error))?;
-        drop_torn_end(&mut file).map_err(|error| failure(&name, &error))?;
-        Ok(Self {
-            file: BufWriter::new(file),
-            name,
-        })
-    }
-
     /// Adds one value of the curve `tag`, such as "loss/value"; `wall_time_s` is its
     /// time in seconds since 1970.
     ///
@@ -98,7 +68,7 @@ impl EventWriter {
 
     fn record(&mut self, data: &[u8]) -> io::Result<()> {
         let length = (data.len() as u64).to_le_bytes();
-        let mut record = Vec::with_capacity(HEADER + data.len() + FOOTER);
+        let mut record = Vec::with_capacity(data.len() + 16);
         record.extend(length);
         record.extend(masked_crc(&length).to_le_bytes());
         record.extend(data);
@@ -118,37 +88,6 @@ fn masked_crc(data: &[u8]) -> u32 {
     crc32c::crc32c(data)
         .rotate_right(15)
         .wrapping_add(0xa282_ead8)
-}
-
-/// Cuts the file after its last whole record and leaves the cursor there.
-fn drop_torn_end(file: &mut File) -> io::Result<()> {
-    let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes)?;
-    let mut whole = 0;
-    while let Some(length) = record_length(&bytes[whole..]) {
-        whole += length;
-    }
-    if whole == 0 {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidData,
-            "not an event file",
-        ));
-    }
-    file.set_len(whole as u64)?;
-    file.seek(SeekFrom::Start(whole as u64))?;
-    Ok(())
-}
-
-/// Bytes of the record that `bytes` starts with, if it is whole and undamaged.
-fn record_length(bytes: &[u8]) -> Option<usize> {
-    let (length, rest) = bytes.split_first_chunk::<8>()?;
-    let (length_crc, rest) = rest.split_first_chunk::<4>()?;
-    let size = usize::try_from(u64::from_le_bytes(*length)).ok()?;
-    let (data, rest) = rest.split_at_checked(size)?;
-    let (data_crc, _) = rest.split_first_chunk::<4>()?;
-    let sound = u32::from_le_bytes(*length_crc) == masked_crc(length)
-        && u32::from_le_bytes(*data_crc) == masked_crc(data);
-    sound.then_some(HEADER + size + FOOTER)
 }
 
 /// `Event { wall_time = 1: double, file_version = 3: string }`

@@ -9,6 +9,10 @@ use super::Error;
 use super::canvas::{Anchor, Canvas, Pixel, paint, text_width};
 use super::chart::{self, Axis, Frame, Plot};
 
+mod levels;
+
+pub use levels::Level;
+
 /// What training had reached at one moment. Values that are missing or not finite are
 /// left out of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -50,16 +54,27 @@ const LABEL_ROWS: usize = 5;
 const CURVE: RGBColor = RGBColor(0x1e, 0x3a, 0x5f);
 
 /// One quantity over the steps.
-struct Panel {
-    label: &'static str,
-    value: fn(&Point) -> Option<f64>,
+pub(super) struct Panel {
+    pub label: &'static str,
+    pub value: fn(&Point) -> Option<f64>,
     /// The axis, where the quantity itself sets its limits.
-    limits: Option<(f64, f64)>,
+    pub limits: Option<(f64, f64)>,
     /// How the last value is written beside the curve.
     format: fn(f64) -> String,
 }
 
-const PANELS: [Panel; 3] = [
+impl Panel {
+    /// The finite values with their steps.
+    pub fn values(&self, points: &[Point]) -> Vec<(f64, f64)> {
+        points
+            .iter()
+            .filter_map(|point| Some((point.steps as f64, (self.value)(point)?)))
+            .filter(|(_, value)| value.is_finite())
+            .collect()
+    }
+}
+
+pub(super) const PANELS: [Panel; 3] = [
     Panel {
         label: "success (%)",
         value: |point| point.success.map(|share| 100.0 * share),
@@ -80,15 +95,18 @@ const PANELS: [Panel; 3] = [
     },
 ];
 
-/// Draws the curves, with `marks` through all panels, as a PNG.
+/// Draws the curves, with `marks` and the beginnings of `levels` through all panels, as a
+/// PNG. A task without a curriculum has no `levels`.
 ///
 /// # Errors
 ///
 /// If the picture cannot be drawn or written.
-pub fn draw(path: &Path, points: &[Point], marks: &[Mark]) -> Result<(), Error> {
-    let end = rounded_end(points);
-    let labels = place_labels(marks, end)?;
-    let rows = labels.iter().map(|label| label.row + 1).max().unwrap_or(0);
+pub fn draw(path: &Path, points: &[Point], marks: &[Mark], levels: &[Level]) -> Result<(), Error> {
+    let end = rounded_end(points.iter().map(|point| point.steps));
+    let numbers = levels::place_numbers(levels, end)?;
+    let labels = place_labels(marks, end, usize::from(!numbers.is_empty()))?;
+    let rows = labels.iter().map(|label| label.row + 1).max();
+    let rows = rows.unwrap_or(usize::from(!numbers.is_empty()));
     let top = TOP + rows as f64 * LABEL_ROW;
     let panels = PANELS.len() as f64;
     let height = top + panels * PANEL + (panels - 1.0) * GAP + BOTTOM;
@@ -97,12 +115,14 @@ pub fn draw(path: &Path, points: &[Point], marks: &[Mark]) -> Result<(), Error> 
             let plot = plot(panel, points, end, top + index as f64 * (PANEL + GAP));
             plot.draw_grid(canvas)?;
             plot.label_y(canvas)?;
+            levels::draw_lines(canvas, &plot, levels)?;
             draw_panel(canvas, panel, &plot, points, marks)?;
             if index + 1 == PANELS.len() {
                 plot.label_x(canvas)?;
                 draw_time(canvas, &plot, points)?;
             }
         }
+        levels::draw_numbers(canvas, &numbers, top - 0.5 * LABEL_ROW)?;
         labels.iter().try_for_each(|label| {
             let at = (label.middle, top - (label.row as f64 + 0.5) * LABEL_ROW);
             let colour = chart::colour(label.mark.colour);
@@ -113,9 +133,8 @@ pub fn draw(path: &Path, points: &[Point], marks: &[Mark]) -> Result<(), Error> 
 
 /// Where the axis of steps ends: at the last step, or at the next round number if that
 /// is so near that the axis would only just miss it.
-fn rounded_end(points: &[Point]) -> f64 {
-    let last = points.iter().map(|point| point.steps).max().unwrap_or(0);
-    let last = last.max(1) as f64;
+pub(super) fn rounded_end(steps: impl Iterator<Item = u64>) -> f64 {
+    let last = steps.max().unwrap_or(0).max(1) as f64;
     chart::ticks(last, 1.01 * last, 1)
         .first()
         .map_or(last, |&round| round.max(last))
@@ -125,8 +144,6 @@ fn plot(panel: &Panel, points: &[Point], end: f64, top: f64) -> Plot {
     let limits = panel.limits.unwrap_or_else(|| {
         chart::extent(points.iter().filter_map(panel.value)).map_or((0.0, 1.0), roomy)
     });
-    let mut x = Axis::new("environment steps", (0.0, end), 11);
-    x.format = chart::steps;
     Plot {
         frame: Frame {
             left: LEFT,
@@ -134,13 +151,20 @@ fn plot(panel: &Panel, points: &[Point], end: f64, top: f64) -> Plot {
             right: WIDTH - RIGHT,
             bottom: top + PANEL,
         },
-        x,
+        x: steps_axis(end, 11),
         y: Axis::new(panel.label, limits, 6),
     }
 }
 
+/// The axis of steps with at most `count` numbers along it.
+pub(super) fn steps_axis(end: f64, count: usize) -> Axis {
+    let mut axis = Axis::new("environment steps", (0.0, end), count);
+    axis.format = chart::steps;
+    axis
+}
+
 /// A little more than the values need, down to zero where they come near it.
-fn roomy((min, max): (f64, f64)) -> (f64, f64) {
+pub(super) fn roomy((min, max): (f64, f64)) -> (f64, f64) {
     let span = max - min;
     let room = if span > 0.0 {
         0.06 * span
@@ -163,12 +187,8 @@ fn draw_panel(
     points: &[Point],
     marks: &[Mark],
 ) -> Result<(), Error> {
-    let raw: Vec<(f64, f64)> = points
-        .iter()
-        .filter_map(|point| Some((point.steps as f64, (panel.value)(point)?)))
-        .filter(|(_, value)| value.is_finite())
-        .collect();
-    let smooth = smoothed(&raw, plot.x.max / 120.0);
+    let raw = panel.values(points);
+    let smooth = smoothed(&raw, plot.x.max);
     let place = |&(x, y): &(f64, f64)| plot.at(x, y.clamp(plot.y.min, plot.y.max));
 
     let line: Vec<Pixel> = raw.iter().map(place).collect();
@@ -186,11 +206,13 @@ fn draw_panel(
     canvas.text(&text, (x + 14.0, y), Anchor::Left, chart::SMALL, CURVE)
 }
 
-/// Averages weighted by a bell curve of standard deviation `width`, along x.
+/// Averages weighted by a bell curve, whose standard deviation is a small part of the
+/// axis of steps up to `end`.
 ///
 /// `values` must be sorted by x, as a training's log is; the neighbourhoods are then
 /// found in one sweep.
-fn smoothed(values: &[(f64, f64)], width: f64) -> Vec<(f64, f64)> {
+pub(super) fn smoothed(values: &[(f64, f64)], end: f64) -> Vec<(f64, f64)> {
+    let width = end / 120.0;
     let reach = 3.0 * width;
     let mut start = 0;
     values
@@ -232,9 +254,9 @@ struct Label<'a> {
     row: usize,
 }
 
-/// Puts each label above its line, in the lowest row in which it is clear of the labels
-/// before it; a label that finds no room is left out.
-fn place_labels(marks: &[Mark], end: f64) -> Result<Vec<Label<'_>>, Error> {
+/// Puts each label above its line, in the lowest row from `first` on in which it is clear
+/// of the labels before it; a label that finds no room is left out.
+fn place_labels(marks: &[Mark], end: f64, first: usize) -> Result<Vec<Label<'_>>, Error> {
     let mut sorted: Vec<&Mark> = marks
         .iter()
         .filter(|mark| !mark.label.is_empty() && mark.steps as f64 <= end)
@@ -249,6 +271,7 @@ fn place_labels(marks: &[Mark], end: f64) -> Result<Vec<Label<'_>>, Error> {
         let middle = x.min(right - half).max(left + half);
         if let Some(row) = taken.iter().position(|&taken| taken < middle - half) {
             taken[row] = middle + half + 16.0;
+            let row = first + row;
             labels.push(Label { mark, middle, row });
         }
     }

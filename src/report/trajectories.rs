@@ -1,11 +1,10 @@
 //! Paths to their targets, seen from above: one panel for each stage of a training, as
 //! in the paper's figure 4 (c).
 
-use plotters::style::RGBColor;
-
 use super::Error;
 use super::canvas::{Anchor, Canvas, Pixel, paint, text_width};
-use super::chart::{self, Axis, Frame, Plot};
+use super::chart::{self, Frame, Plot};
+use super::ground;
 
 /// One walk to one target.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,9 +31,6 @@ pub struct Group {
     pub paths: Vec<Path>,
 }
 
-/// Distance from the target at which it counts as reached, in metres.
-const TARGET_RADIUS: f64 = 0.5;
-
 const COLUMNS: usize = 4;
 const SIDE: f64 = 440.0;
 const LEFT: f64 = 110.0;
@@ -43,8 +39,9 @@ const GAP: f64 = 28.0;
 const TITLE: f64 = 56.0;
 const BOTTOM: f64 = 76.0;
 
-/// Draws the groups side by side, to one scale, as a PNG; a walk is cut where it leaves the panel. The viewer looks down, so
-/// z grows downwards and a turn to the left looks like one.
+/// Draws the groups side by side, to one scale, as a PNG; a walk is cut where it leaves
+/// the panel. The viewer looks down, so z grows downwards and a turn to the left looks
+/// like one.
 ///
 /// # Errors
 ///
@@ -93,12 +90,12 @@ impl Square {
             let paths = groups.iter().flat_map(|group| &group.paths);
             let values =
                 paths.flat_map(move |path| path.points.first().into_iter().chain([&path.target]));
-            let values = values.filter(|point| finite(point));
+            let values = values.filter(|point| ground::finite(point));
             chart::extent(values.map(|point| f64::from(point[axis]))).unwrap_or((0.0, 0.0))
         };
         let (x, z) = (all(0), all(1));
-        let half_x = (x.1 - x.0) / 2.0 + TARGET_RADIUS + BESIDE;
-        let half_z = (z.1 - z.0) / 2.0 + TARGET_RADIUS + ABOVE;
+        let half_x = (x.1 - x.0) / 2.0 + ground::TARGET_RADIUS + BESIDE;
+        let half_z = (z.1 - z.0) / 2.0 + ground::TARGET_RADIUS + ABOVE;
         Self {
             centre: ((x.0 + x.1) / 2.0, (z.0 + z.1) / 2.0),
             half: half_x.max(half_z),
@@ -106,31 +103,22 @@ impl Square {
     }
 
     fn plot(&self, left: f64, top: f64) -> Plot {
-        // A plot grows upwards, but z grows downwards: the plot's y is -z.
-        let mut z = self.axis("z (m)", -self.centre.1);
-        z.format = |value| chart::number(-value);
-        Plot {
-            frame: Frame {
-                left,
-                top,
-                right: left + SIDE,
-                bottom: top + SIDE,
-            },
-            x: self.axis("x (m)", self.centre.0),
-            y: z,
+        let frame = Frame {
+            left,
+            top,
+            right: left + SIDE,
+            bottom: top + SIDE,
+        };
+        let mut plot = ground::plot(frame, self.centre, self.half);
+        for axis in [&mut plot.x, &mut plot.y] {
+            // Lines every metre, while these do not crowd.
+            if self.half < 15.0 {
+                axis.lines = (axis.min.ceil() as i32..=axis.max.floor() as i32)
+                    .map(f64::from)
+                    .collect();
+            }
         }
-    }
-
-    /// Numbers every few metres, lines every metre while these do not crowd.
-    fn axis(&self, label: &'static str, centre: f64) -> Axis {
-        let (min, max) = (centre - self.half, centre + self.half);
-        let mut axis = Axis::new(label, (min, max), 7);
-        if self.half < 15.0 {
-            axis.lines = (min.ceil() as i32..=max.floor() as i32)
-                .map(f64::from)
-                .collect();
-        }
-        axis
+        plot
     }
 }
 
@@ -156,77 +144,41 @@ fn draw_group(canvas: &mut Canvas<'_>, plot: &Plot, group: &Group) -> Result<(),
 }
 
 fn draw_target(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
-    if !finite(&path.target) {
+    if !ground::finite(&path.target) {
         return Ok(());
     }
+    let centre = ground::place(plot, path.target);
     let colour = chart::colour(path.colour);
-    let centre = place(plot, path.target);
-    let radius = radius(plot);
-    canvas.disc(centre, radius, colour, 0.14)?;
-    draw_circle(canvas, centre, radius, colour, path.reached)
-}
-
-fn draw_circle(
-    canvas: &mut Canvas<'_>,
-    centre: Pixel,
-    radius: f64,
-    colour: RGBColor,
-    whole: bool,
-) -> Result<(), Error> {
-    const CORNERS: u32 = 48;
-    let corner = |index: u32| {
-        let angle = f64::from(index) * std::f64::consts::TAU / f64::from(CORNERS);
-        (
-            centre.0 + radius * angle.cos(),
-            centre.1 + radius * angle.sin(),
-        )
-    };
-    for index in (0..CORNERS).filter(|index| whole || index % 4 < 2) {
-        canvas.line(&[corner(index), corner(index + 1)], colour, 2.0)?;
-    }
-    Ok(())
+    ground::target(canvas, plot, centre, colour, path.reached)
 }
 
 fn draw_path(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
     let colour = chart::colour(path.colour);
     let line = walked(plot, path);
-    for piece in line.split(|&point| !inside(&plot.frame, point)) {
-        canvas.line(piece, colour, 3.0)?;
-    }
+    ground::line(canvas, &plot.frame, &line, colour, 3.0)?;
     match line.last() {
-        Some(&end) if !inside(&plot.frame, end) => Ok(()),
+        Some(&end) if !ground::inside(&plot.frame, end) => Ok(()),
         Some(&end) if path.reached => canvas.disc(end, 4.5, colour, 1.0),
-        Some(&end) => draw_cross(canvas, end, colour),
+        Some(&end) => ground::cross(canvas, end, colour),
         None => Ok(()),
     }
 }
 
-fn inside(frame: &Frame, (x, y): Pixel) -> bool {
-    (frame.left..=frame.right).contains(&x) && (frame.top..=frame.bottom).contains(&y)
-}
-
-fn draw_cross(canvas: &mut Canvas<'_>, (x, y): Pixel, colour: RGBColor) -> Result<(), Error> {
-    const ARM: f64 = 6.5;
-    canvas.line(&[(x - ARM, y - ARM), (x + ARM, y + ARM)], colour, 3.0)?;
-    canvas.line(&[(x - ARM, y + ARM), (x + ARM, y - ARM)], colour, 3.0)
-}
-
 fn draw_start(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
-    let Some(&start) = walked(plot, path).first() else {
-        return Ok(());
-    };
-    canvas.disc(start, 8.0, chart::INK, 1.0)?;
-    canvas.disc(start, 4.5, chart::tint(chart::INK, 0.0), 1.0)
+    match walked(plot, path).first() {
+        Some(&start) => ground::start(canvas, start),
+        None => Ok(()),
+    }
 }
 
 /// Writes the label on the far side of the target, where the path does not run.
 fn draw_label(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
-    let start = path.points.iter().find(|point| finite(point));
-    if !finite(&path.target) || path.label.is_empty() {
+    let start = path.points.iter().find(|point| ground::finite(point));
+    if !ground::finite(&path.target) || path.label.is_empty() {
         return Ok(());
     }
-    let target = place(plot, path.target);
-    let from = start.map_or(target, |&start| place(plot, start));
+    let target = ground::place(plot, path.target);
+    let from = start.map_or(target, |&start| ground::place(plot, start));
     let (x, y) = (target.0 - from.0, target.1 - from.1);
     let length = x.hypot(y);
     let (x, y) = if length > 0.0 {
@@ -235,7 +187,7 @@ fn draw_label(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), E
         (0.0, -1.0)
     };
     let half = text_width(&path.label, chart::SMALL)? / 2.0;
-    let away = radius(plot) + 8.0;
+    let away = ground::target_radius(plot) + 8.0;
     let at = (
         target.0 + x * (away + half),
         target.1 + y * (away + chart::SMALL / 2.0),
@@ -245,18 +197,6 @@ fn draw_label(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), E
 }
 
 fn walked(plot: &Plot, path: &Path) -> Vec<Pixel> {
-    let points = path.points.iter().filter(|point| finite(point));
-    points.map(|&point| place(plot, point)).collect()
-}
-
-fn place(plot: &Plot, [x, z]: [f32; 2]) -> Pixel {
-    plot.at(f64::from(x), -f64::from(z))
-}
-
-fn radius(plot: &Plot) -> f64 {
-    TARGET_RADIUS * (plot.frame.right - plot.frame.left) / (plot.x.max - plot.x.min)
-}
-
-fn finite(point: &[f32; 2]) -> bool {
-    point.iter().all(|value| value.is_finite())
+    let points = path.points.iter().filter(|point| ground::finite(point));
+    points.map(|&point| ground::place(plot, point)).collect()
 }

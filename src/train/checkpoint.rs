@@ -1,35 +1,35 @@
 //! A run at one moment, complete: it goes on from here as if it had never stopped.
 
 use super::config::Config;
-use crate::kernels::layout::{OBSERVATION, real, whole};
+use crate::kernels::layout::{AXES, CELLS, MAPS, boxes, real, whole};
 use crate::ppo::Ppo;
 use crate::ppo::adam::Adam;
-use crate::ppo::policy::Shape;
+use crate::ppo::policy::{Network, Shape};
 use crate::ppo::scale::Scale;
 use crate::ppo::update::Learner;
 use crate::store::{Arrays, Format, StoreError};
 use crate::tensors::{read, vector};
-use crate::world::{Plane, Snapshot};
+use crate::world::{Snapshot, Task};
 use burn::tensor::Device;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 const FORMAT: Format = Format {
     kind: "checkpt",
-    version: 1,
+    version: 2,
 };
 
 /// What a policy was trained for, and how far the run had come.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
-    pub task: String,
+    pub task: Task,
+    /// Numbers of an observation.
     pub observation: usize,
     /// Of the database: a policy is of no use with another.
     pub database: u32,
-    pub hidden: Vec<usize>,
+    pub network: Network,
     /// All choices of learning, as TOML.
     pub ppo: String,
-    pub plane: Plane,
     pub seed: u32,
     pub steps: u64,
     pub wall_s: f64,
@@ -48,6 +48,7 @@ pub struct Header {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
     pub header: Header,
+    pub shape: Shape,
     pub parameters: Vec<f32>,
     pub first_moment: Vec<f32>,
     pub second_moment: Vec<f32>,
@@ -72,11 +73,11 @@ pub enum CheckpointError {
     )]
     Changed { key: &'static str },
     #[error(
-        "{path} is of the task `{found}` with {found_width} observations, not `{wanted}` with {wanted_width}"
+        "{path} is of the task `{found}` with {found_width} observations, not of `{wanted}` with {wanted_width}"
     )]
     Task {
         path: PathBuf,
-        found: String,
+        found: &'static str,
         found_width: usize,
         wanted: &'static str,
         wanted_width: usize,
@@ -91,6 +92,7 @@ impl Checkpoint {
     pub fn take(header: Header, learner: &Learner) -> anyhow::Result<Self> {
         Ok(Checkpoint {
             header,
+            shape: learner.shape.clone(),
             parameters: read(learner.parameters.clone())?,
             first_moment: read(learner.adam.first.clone())?,
             second_moment: read(learner.adam.second.clone())?,
@@ -99,8 +101,12 @@ impl Checkpoint {
     }
 
     /// Puts the state into a fresh learner of the same configuration.
-    pub fn learner(&self, config: &Ppo, device: &Device) -> Learner {
-        let mut learner = Learner::new(config, device, self.header.seed);
+    ///
+    /// # Errors
+    /// See [`Learner::new`].
+    pub fn learner(&self, config: &Ppo, device: &Device) -> anyhow::Result<Learner> {
+        let header = &self.header;
+        let mut learner = Learner::new(config, header.observation, device, header.seed)?;
         learner.parameters = vector(&self.parameters, device);
         learner.adam = Adam {
             first: vector(&self.first_moment, device),
@@ -113,7 +119,7 @@ impl Checkpoint {
         };
         [learner.learning_rate, learner.kl_coefficient] = self.header.rates;
         learner.updates = self.header.updates;
-        learner
+        Ok(learner)
     }
 
     pub fn save(&self, path: &Path) -> Result<(), StoreError> {
@@ -124,6 +130,9 @@ impl Checkpoint {
         arrays.put("value_moments", &self.value_moments);
         arrays.put("real", &self.header.world.real);
         arrays.put("whole", &self.header.world.whole);
+        arrays.put("boxes", &self.header.world.boxes);
+        arrays.put("drift", &self.header.world.drift);
+        arrays.put("maps", &self.header.world.maps);
         arrays.put("rates", &self.header.rates);
         crate::store::save(path, FORMAT, &self.header, &arrays)
     }
@@ -143,9 +152,15 @@ impl Checkpoint {
         let (first_moment, second_moment) = (floats("first_moment")?, floats("second_moment")?);
         let value_moments = floats("value_moments")?;
         header.world.real = floats("real")?;
+        header.world.boxes = floats("boxes")?;
+        header.world.drift = floats("drift")?;
         header.world.whole = arrays.take("whole").ok_or_else(|| damaged("no whole"))?;
+        header.world.maps = arrays.take("maps").ok_or_else(|| damaged("no maps"))?;
         let rates: Vec<f64> = arrays.take("rates").ok_or_else(|| damaged("no rates"))?;
-        let expected = Shape::new(&header.hidden).parameters();
+        let shape = Shape::new(&header.network, header.observation)
+            .filter(|_| header.observation == header.task.width())
+            .ok_or_else(|| damaged("its network does not fit its task"))?;
+        let expected = shape.parameters();
         let envs = header.world.whole.len() / whole::FIELDS;
         let numbers = [
             &parameters,
@@ -153,6 +168,8 @@ impl Checkpoint {
             &second_moment,
             &value_moments,
             &header.world.real,
+            &header.world.boxes,
+            &header.world.drift,
         ];
         if !numbers
             .into_iter()
@@ -172,12 +189,16 @@ impl Checkpoint {
             && [parameters.len(), first_moment.len(), second_moment.len()] == [expected; 3]
             && value_moments.len() == 2
             && header.world.real.len() == envs * real::FIELDS
-            && header.world.whole.len() == envs * whole::FIELDS;
+            && header.world.whole.len() == envs * whole::FIELDS
+            && header.world.boxes.len() == envs * boxes::FIELDS * header.task.obstacles()
+            && header.world.drift.len() == envs * AXES * header.task.obstacles()
+            && header.world.maps.len() == envs * MAPS * CELLS;
         if !fits {
             return Err(damaged("its arrays do not fit together"));
         }
         Ok(Checkpoint {
             header,
+            shape,
             parameters,
             first_moment,
             second_moment,
@@ -190,9 +211,9 @@ impl Checkpoint {
         let (header, envs) = (&self.header, self.header.world.whole.len() / whole::FIELDS);
         let same = [
             ("ppo.envs", envs == config.ppo.envs),
-            ("ppo.hidden", header.hidden == config.ppo.hidden),
+            ("ppo.network", header.network == config.ppo.network),
             ("ppo", config.ppo.to_toml() == header.ppo),
-            ("plane", header.plane == config.plane),
+            (header.task.name(), header.task == config.task),
             ("seed", header.seed == config.seed),
         ];
         match same.into_iter().find(|(_, same)| !same) {
@@ -201,17 +222,17 @@ impl Checkpoint {
         }
     }
 
-    /// Loads a checkpoint of the plane task for a database.
-    pub fn load_for(path: &Path, database: u32) -> Result<Self, CheckpointError> {
+    /// Loads a checkpoint of a task for a database.
+    pub fn load_for(path: &Path, task: &Task, database: u32) -> Result<Self, CheckpointError> {
         let checkpoint = Self::load(path)?;
         let header = &checkpoint.header;
-        if header.task != super::trainer::TASK || header.observation != OBSERVATION {
+        if header.task.name() != task.name() || header.observation != task.width() {
             return Err(CheckpointError::Task {
                 path: path.to_path_buf(),
-                found: header.task.clone(),
+                found: header.task.name(),
                 found_width: header.observation,
-                wanted: super::trainer::TASK,
-                wanted_width: OBSERVATION,
+                wanted: task.name(),
+                wanted_width: task.width(),
             });
         }
         if header.database != database {

@@ -3,7 +3,9 @@
 use crate::gpu::Choice;
 use crate::motion::normalise::Weights;
 use crate::ppo::Ppo;
-use crate::world::Plane;
+use crate::ppo::convolution::Convolution;
+use crate::ppo::policy::Network;
+use crate::world::{Obstacles, Plane, Task};
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
@@ -21,9 +23,15 @@ pub enum Preset {
     Paper,
 }
 
+/// Which task a run trains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Plane,
+    Obstacles,
+}
+
 /// The resolved configuration of a run, saved in its folder as `config.toml`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Config {
     pub preset: Preset,
     pub device: Choice,
@@ -45,7 +53,9 @@ pub struct Config {
     pub checkpoint_every: u64,
     /// Importance of each group of features in the search.
     pub weights: Weights,
-    pub plane: Plane,
+    /// A table of the task's name.
+    #[serde(flatten)]
+    pub task: Task,
     pub ppo: Ppo,
 }
 
@@ -74,51 +84,70 @@ pub enum ConfigError {
 }
 
 impl Config {
-    pub fn preset(preset: Preset) -> Self {
+    pub fn preset(kind: Kind, preset: Preset) -> Self {
+        let (task, ppo) = match (kind, preset) {
+            (Kind::Plane, Preset::Fast) => (Task::Plane(Plane::default()), fast()),
+            (Kind::Plane, Preset::Paper) => (Task::Plane(Plane::default()), paper()),
+            (Kind::Obstacles, Preset::Fast) => (Task::Obstacles(Obstacles::FAST), fast_obstacles()),
+            (Kind::Obstacles, Preset::Paper) => {
+                (Task::Obstacles(Obstacles::PAPER), paper_obstacles())
+            }
+        };
         Config {
             preset,
             device: Choice::Auto,
             seed: 1,
             data: None,
-            steps: 1_000_000,
+            steps: match kind {
+                Kind::Plane => 1_000_000,
+                Kind::Obstacles => 3_000_000,
+            },
             max_time_s: None,
             stop_success: None,
             evaluate_every: 20_000,
             checkpoint_every: 250_000,
             weights: Weights::PAPER,
-            plane: Plane::default(),
-            ppo: match preset {
-                Preset::Fast => fast(),
-                Preset::Paper => paper(),
-            },
+            task,
+            ppo,
         }
     }
 
+    /// A run's own `config.toml`, whatever its task.
+    pub fn of_run(path: &Path) -> Result<Self, ConfigError> {
+        let text = read(path)?;
+        // What is no TOML at all is told by `overlaid`.
+        let table: toml::Table = toml::from_str(&text).unwrap_or_default();
+        let kind = match table.contains_key("obstacles") {
+            true => Kind::Obstacles,
+            false => Kind::Plane,
+        };
+        Self::overlaid(path, &text, kind, Preset::default())
+    }
+
     /// A preset changed by the keys a TOML file names.
-    pub fn from_file(path: &Path, preset: Preset) -> Result<Self, ConfigError> {
-        let text = std::fs::read_to_string(path).map_err(|error| ConfigError::Read {
-            path: path.to_path_buf(),
-            error,
-        })?;
+    pub fn from_file(path: &Path, kind: Kind, preset: Preset) -> Result<Self, ConfigError> {
+        Self::overlaid(path, &read(path)?, kind, preset)
+    }
+
+    fn overlaid(path: &Path, text: &str, kind: Kind, preset: Preset) -> Result<Self, ConfigError> {
         let toml = |message: String| ConfigError::Toml {
             path: path.to_path_buf(),
             message: message.trim().replace("\nin `", ", in `"),
         };
-        let changes: toml::Table =
-            toml::from_str(&text).map_err(|error| toml(error.to_string()))?;
+        let changes: toml::Table = toml::from_str(text).map_err(|error| toml(error.to_string()))?;
         let preset = match changes.get("preset") {
             Some(named @ toml::Value::String(_)) => {
                 Preset::deserialize(named.clone()).map_err(|error| toml(error.to_string()))?
             }
             _ => preset,
         };
-        let mut table = Config::preset(preset)
+        let mut table = Config::preset(kind, preset)
             .complete()
             .map_err(|error| toml(error.to_string()))?;
         let names = names(&table, "");
         overlay(&mut table, changes, "", &names).map_err(|mistake| ConfigError::Key {
             path: path.to_path_buf(),
-            line: line_of(&text, &mistake.key).unwrap_or(1),
+            line: line_of(text, &mistake.key).unwrap_or(1),
             problem: mistake.problem,
         })?;
         let mut config: Config = table
@@ -128,6 +157,11 @@ impl Config {
         config.max_time_s = config.max_time_s.filter(|&seconds| seconds != 0.0);
         config.stop_success = config.stop_success.filter(|&success| success != 0.0);
         Ok(config)
+    }
+
+    /// Environment steps of an update.
+    pub fn batch(&self) -> u64 {
+        self.ppo.batch() as u64
     }
 
     /// Every key there is, those without a value too.
@@ -151,19 +185,30 @@ impl Config {
         if let Some(success) = self.stop_success {
             within("stop_success", success, 0.01, 1.0)?;
         }
-        check_plane(&self.plane)?;
+        match &self.task {
+            Task::Plane(plane) => check_plane(plane)?,
+            Task::Obstacles(obstacles) => check_obstacles(obstacles, self.ppo.envs)?,
+        }
         check_weights(&self.weights)?;
         check_ppo(&self.ppo)?;
-        if self.ppo.horizon > self.plane.max_steps as usize {
+        if self.ppo.horizon > self.task.max_steps() as usize {
             return Err(ConfigError::Value {
                 key: "ppo.horizon",
                 value: self.ppo.horizon.to_string(),
-                why: "a rollout may hold one truncation an environment: at most plane.max_steps"
-                    .into(),
+                why:
+                    "a rollout may hold one truncation an environment: at most the task's max_steps"
+                        .into(),
             });
         }
         Ok(())
     }
+}
+
+fn read(path: &Path) -> Result<String, ConfigError> {
+    std::fs::read_to_string(path).map_err(|error| ConfigError::Read {
+        path: path.to_path_buf(),
+        error,
+    })
 }
 
 /// A number in its range, ends included; NaN is in none.
@@ -198,6 +243,39 @@ fn check_plane(plane: &Plane) -> Result<(), ConfigError> {
     })
 }
 
+fn check_obstacles(task: &Obstacles, envs: usize) -> Result<(), ConfigError> {
+    let boxes = envs.saturating_mul(task.count as usize);
+    // `reset` looks through all of them up to 32 times, and lavapipe stops after 65,535 iterations.
+    within("obstacles.count", task.count, 0, 2000)?;
+    within("ppo.envs times obstacles.count", boxes, 0, 1 << 23)?;
+    within("obstacles.side_min", task.side_min, 0.001, 1000.0)?;
+    within("obstacles.side_max", task.side_max, task.side_min, 1000.0)?;
+    within("obstacles.square", task.square, 0.1, 1000.0)?;
+    within("obstacles.margin", task.margin, 0.0, 1000.0)?;
+    if task.square <= 0.5 * task.side_max + task.margin {
+        return Err(ConfigError::Value {
+            key: "obstacles.square",
+            value: task.square.to_string(),
+            why: format!(
+                "the start cannot be kept clear: an obstacle of side {} with a margin of {} reaches it from everywhere; it must be over {}",
+                task.side_max,
+                task.margin,
+                0.5 * task.side_max + task.margin
+            ),
+        });
+    }
+    within("obstacles.speed", task.speed, 0.0, 100.0)?;
+    let (first, last) = (task.half_side_first, task.half_side_last);
+    within("obstacles.half_side_first", first, 0.1, 1000.0)?;
+    within("obstacles.half_side_last", last, 0.1, 1000.0)?;
+    within("obstacles.reach", task.reach, 0.001, 1000.0)?;
+    within("obstacles.reach", task.reach, 0.001, first.min(last))?;
+    within("obstacles.max_steps", task.max_steps, 1, 10_000)?;
+    within("obstacles.success_bonus", task.success_bonus, -1e6, 1e6)?;
+    within("obstacles.collision", task.collision, -1e6, 0.0)?;
+    within("obstacles.pass", task.pass, 0.0, 1.0)
+}
+
 fn check_weights(weights: &Weights) -> Result<(), ConfigError> {
     within("weights.foot_position", weights.foot_position, 0.0, 1e3)?;
     within("weights.foot_velocity", weights.foot_velocity, 0.0, 1e3)?;
@@ -227,9 +305,42 @@ fn check_ppo(ppo: &Ppo) -> Result<(), ConfigError> {
     within("ppo.kl_target", ppo.kl_target, 1e-6, 100.0)?;
     within("ppo.max_gradient", ppo.max_gradient, 0.0, 1e6)?;
     within("ppo.log_std", ppo.log_std, -10.0, 2.0)?;
-    within("the length of ppo.hidden", ppo.hidden.len(), 0, 8)?;
-    let mut widths = ppo.hidden.iter();
-    widths.try_for_each(|&width| within("a width of ppo.hidden", width, 1, 2048))
+    check_network(&ppo.network)
+}
+
+fn check_network(network: &Network) -> Result<(), ConfigError> {
+    let (hidden, sight) = (&network.hidden, &network.sight);
+    within("the length of ppo.network.hidden", hidden.len(), 0, 8)?;
+    within("the length of ppo.network.sight", sight.len(), 0, 8)?;
+    for &width in hidden {
+        within("a width of ppo.network.hidden", width, 1, 2048)?;
+    }
+    for &width in sight {
+        within("a width of ppo.network.sight", width, 1, 2048)?;
+    }
+    for convolution in &network.convolutions {
+        within(
+            "filters of ppo.network.convolutions",
+            convolution.filters,
+            1,
+            256,
+        )?;
+        within("size of ppo.network.convolutions", convolution.size, 1, 16)?;
+        within(
+            "stride of ppo.network.convolutions",
+            convolution.stride,
+            1,
+            16,
+        )?;
+    }
+    match network.eyes() {
+        Some(_) => Ok(()),
+        None => Err(ConfigError::Value {
+            key: "ppo.network.convolutions",
+            value: format!("{:?}", network.convolutions),
+            why: "a filter is larger than what it sees: the maps are 16 x 16, and each convolution makes them smaller".into(),
+        }),
+    }
 }
 
 /// Writes `changes` over `table`, refusing keys that `table` does not know and values of another
@@ -335,7 +446,11 @@ fn fast() -> Ppo {
         kl_target: 0.01,
         max_gradient: 1.0,
         log_std: 0.0,
-        hidden: vec![32, 32],
+        network: Network {
+            convolutions: Vec::new(),
+            sight: Vec::new(),
+            hidden: vec![32, 32],
+        },
     }
 }
 
@@ -359,6 +474,58 @@ fn paper() -> Ppo {
         kl_target: 0.01,
         max_gradient: 0.0,
         log_std: 0.0,
-        hidden: vec![32, 32],
+        network: Network {
+            convolutions: Vec::new(),
+            sight: Vec::new(),
+            hidden: vec![32, 32],
+        },
+    }
+}
+
+fn fast_obstacles() -> Ppo {
+    Ppo {
+        epochs: 4,
+        learning_rate: 1e-3,
+        gamma: 0.97,
+        network: Network {
+            convolutions: vec![
+                Convolution {
+                    filters: 16,
+                    size: 4,
+                    stride: 2,
+                },
+                Convolution {
+                    filters: 32,
+                    size: 3,
+                    stride: 2,
+                },
+            ],
+            sight: vec![64],
+            hidden: vec![64, 64],
+        },
+        ..fast()
+    }
+}
+
+/// The networks of the paper (its figure 3, right).
+fn paper_obstacles() -> Ppo {
+    Ppo {
+        network: Network {
+            convolutions: vec![
+                Convolution {
+                    filters: 16,
+                    size: 4,
+                    stride: 1,
+                },
+                Convolution {
+                    filters: 32,
+                    size: 3,
+                    stride: 1,
+                },
+            ],
+            sight: vec![128],
+            hidden: vec![256, 128],
+        },
+        ..paper()
     }
 }

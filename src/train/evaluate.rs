@@ -1,100 +1,28 @@
 //! Judges a controller on a fixed set of episodes, each run to its end.
 
-use super::checkpoint::Checkpoint;
-use crate::kernels::layout::{OBSERVATION, end, real};
+use super::controller::Controller;
+use crate::kernels::layout::{end, real};
 use crate::kernels::rng::{random4, uniform01};
 use crate::motion::RATE;
 use crate::motion::database::Database;
-use crate::motion::features::{AHEAD, PLAYED, POSE, TRAJECTORY};
-use crate::motion::frame::to_local;
-use crate::ppo::policy::{Policy, Shape};
-use crate::tensors;
+use crate::motion::features::PLAYED;
 use crate::world::cpu::CpuWorld;
-use crate::world::{Plane, World};
+use crate::world::{LEVELS, Setup, Task};
 use anyhow::Result;
-use burn::tensor::Device;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Seed of the evaluation episodes: the same for every controller.
 const EPISODES_SEED: u32 = 0x4556_414c;
-const SECONDS_A_STEP: f32 = PLAYED as f32 / RATE;
+pub const SECONDS_A_STEP: f32 = PLAYED as f32 / RATE;
 /// A character has turned to a new target once it nears it this fast, m/s.
 const NEARING: f32 = 0.5;
 /// Steps to wait for that.
 const PATIENCE: u32 = 50;
-
-/// Anything that asks for trajectories.
-pub trait Controller {
-    /// Normalised actions `[envs][TRAJECTORY]` for observations `[envs][OBSERVATION]`.
-    fn act(&self, observation: &[f32]) -> Result<Vec<f32>>;
-}
-
-/// A trained policy's mean, without exploration.
-pub struct Trained {
-    policy: Policy,
-    device: Device,
-}
-
-impl Trained {
-    pub fn new(hidden: &[usize], parameters: &[f32]) -> Self {
-        let device = Device::flex();
-        Trained {
-            policy: Shape::new(hidden).cut(&tensors::vector(parameters, &device)),
-            device,
-        }
-    }
-}
-
-impl From<&Checkpoint> for Trained {
-    fn from(checkpoint: &Checkpoint) -> Self {
-        Trained::new(&checkpoint.header.hidden, &checkpoint.parameters)
-    }
-}
-
-impl Controller for Trained {
-    fn act(&self, observation: &[f32]) -> Result<Vec<f32>> {
-        let shape = [observation.len() / OBSERVATION, OBSERVATION];
-        tensors::read(
-            self.policy
-                .mean(tensors::upload(observation.to_vec(), shape, &self.device)),
-        )
-    }
-}
-
-/// Scripted motion matching: asks for a straight walk to the target at one speed.
-pub struct Scripted<'a> {
-    pub database: &'a Database,
-    /// m/s
-    pub speed: f32,
-}
-
-impl Controller for Scripted<'_> {
-    fn act(&self, observation: &[f32]) -> Result<Vec<f32>> {
-        let normal = &self.database.normalisation;
-        let mut action = Vec::with_capacity(observation.len() / OBSERVATION * TRAJECTORY);
-        for row in observation.chunks_exact(OBSERVATION) {
-            // The goal's scale does not matter for its direction.
-            let goal = [row[POSE], row[POSE + 1]];
-            let length = goal[0].hypot(goal[1]).max(1e-6);
-            let direction = goal.map(|g| g / length);
-            for (k, ahead) in AHEAD.iter().enumerate() {
-                let far = self.speed * *ahead as f32 / RATE;
-                let asked = [
-                    direction[0] * far,
-                    direction[1] * far,
-                    direction[0],
-                    direction[1],
-                ];
-                for (i, value) in asked.into_iter().enumerate() {
-                    let at = POSE + 4 * k + i;
-                    action.push((value - normal.mean[at]) * normal.scale[at]);
-                }
-            }
-        }
-        Ok(action)
-    }
-}
+/// A character loiters that stays this near its target, m, for more than so many steps on end
+/// without reaching it.
+const LOITER_DISTANCE: f32 = 1.5;
+const LOITER_STEPS: u32 = 25;
 
 /// What an evaluation found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -102,6 +30,11 @@ pub struct Report {
     pub episodes: usize,
     /// Share of episodes that reached their target.
     pub success: f64,
+    /// Share of episodes that ran into an obstacle.
+    pub collision: f64,
+    /// Share of episodes that stayed within 1.5 m of the target for over 5 s on end without reaching
+    /// it.
+    pub loiter: f64,
     /// Over the successful episodes, s.
     pub time_to_target_mean_s: f64,
     pub time_to_target_p95_s: f64,
@@ -109,21 +42,66 @@ pub struct Report {
     pub path_ratio: f64,
     /// Length walked over time, m/s.
     pub mean_speed: f64,
-    /// After the target has suddenly moved: time until the character nears the new one at
-    /// 0.5 m/s, s; 10 if it never does.
-    pub turn_delay_mean_s: f64,
+    /// Over all episodes, s.
+    pub episode_length_mean_s: f64,
+    /// On the plane, after the target has suddenly moved: time until the character nears the new one
+    /// at 0.5 m/s, s; 10 if it never does.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub turn_delay_mean_s: Option<f64>,
 }
 
-/// One episode's walk, for pictures.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Walk {
-    /// Root on the ground after every step, `[x, z]`, m.
-    pub points: Vec<[f32; 2]>,
-    pub target: [f32; 2],
-    pub reached: bool,
+/// The evaluation episodes of a task on a level.
+pub fn episodes(database: &Arc<Database>, task: Task, level: u32, episodes: usize) -> CpuWorld {
+    let setup = Setup {
+        task,
+        envs: episodes,
+        horizon: 1,
+        seed: EPISODES_SEED,
+        level,
+    };
+    CpuWorld::new(database.clone(), &setup, 0)
 }
 
+/// One step of all worlds under a controller.
+pub fn advance(world: &mut CpuWorld, controller: &dyn Controller) -> Result<()> {
+    let action = controller.act(&world.observation(), world.rules.task.width())?;
+    world.play(&action);
+    Ok(())
+}
+
+/// The hardest level, which reports are of if no other is named.
+pub fn hardest(
+    controller: &dyn Controller,
+    database: &Arc<Database>,
+    task: Task,
+    count: usize,
+) -> Result<Report> {
+    evaluate(controller, database, task, LEVELS - 1, count)
+}
+
+/// Sums over episodes.
+#[derive(Default)]
+struct Found {
+    /// Of the successful episodes.
+    times: Vec<f64>,
+    ratios: Vec<f64>,
+    walked: f64,
+    collisions: usize,
+    loiterers: usize,
+    steps: f64,
+    delays: Vec<f64>,
+}
+
+/// One episode on the way.
 #[derive(Clone, Copy)]
+struct Episode {
+    phase: Phase,
+    /// Steps on end near the target.
+    near: u32,
+    loiters: bool,
+}
+
+#[derive(Clone, Copy, PartialEq)]
 enum Phase {
     /// Under way to the episode's target.
     Reaching,
@@ -134,68 +112,120 @@ enum Phase {
     Done,
 }
 
-/// Runs `episodes` fixed episodes to their end, and after each arrival a change of target.
+/// Runs `count` fixed episodes to their end, and on the plane after each arrival a change of target.
 pub fn evaluate(
     controller: &dyn Controller,
     database: &Arc<Database>,
-    task: Plane,
-    episodes: usize,
+    task: Task,
+    level: u32,
+    count: usize,
 ) -> Result<Report> {
-    let mut world = CpuWorld::fresh(database.clone(), task, episodes, EPISODES_SEED);
-    let mut phases = vec![Phase::Reaching; episodes];
-    let (mut times, mut ratios, mut walked, mut delays) = (vec![], vec![], 0.0, vec![]);
-    for step in 1..=task.max_steps + PATIENCE {
+    let mut world = episodes(database, task, level, count);
+    let begun = Episode {
+        phase: Phase::Reaching,
+        near: 0,
+        loiters: false,
+    };
+    let mut running = vec![begun; count];
+    let mut found = Found::default();
+    for step in 1..=task.max_steps() + PATIENCE {
         let before = world.real.clone();
-        let observation = tensors::read(world.observe())?;
-        world.play(&controller.act(&observation)?);
-        for (env, phase) in phases.iter_mut().enumerate() {
-            let field = |of: &[f32], field: usize| of[field * episodes + env];
-            *phase = match *phase {
-                Phase::Reaching if world.ended[env] == end::REACHED => {
-                    let straight = field(&world.real, real::X).hypot(field(&world.real, real::Z));
-                    let path = field(&world.real, real::TRAVELLED);
-                    times.push(f64::from(step as f32 * SECONDS_A_STEP));
-                    ratios.push(f64::from(path / straight));
-                    walked += f64::from(path);
-                    send_elsewhere(&mut world, env, task);
-                    Phase::Turning { since: step }
-                }
-                Phase::Reaching if step >= task.max_steps => Phase::Done,
+        advance(&mut world, controller)?;
+        for (env, episode) in running.iter_mut().enumerate() {
+            match episode.phase {
+                Phase::Reaching => found.reaching(&mut world, env, episode, step),
                 Phase::Turning { since } => {
-                    let distance = |of: &[f32]| {
-                        let x = field(of, real::TARGET_X) - field(of, real::X);
-                        x.hypot(field(of, real::TARGET_Z) - field(of, real::Z))
-                    };
-                    let nearing = (distance(&before) - distance(&world.real)) / SECONDS_A_STEP;
-                    if nearing >= NEARING || step - since >= PATIENCE {
-                        delays.push(f64::from((step - since) as f32 * SECONDS_A_STEP));
-                        Phase::Done
-                    } else {
-                        *phase
-                    }
+                    found.turning(&world, &before, env, episode, step - since)
                 }
-                unchanged => unchanged,
-            };
+                Phase::Done => {}
+            }
         }
-        if phases.iter().all(|phase| matches!(phase, Phase::Done)) {
+        let left: Vec<usize> = (0..running.len())
+            .filter(|&env| running[env].phase != Phase::Done)
+            .collect();
+        if left.is_empty() {
             break;
         }
+        // What is over need not be played on.
+        if left.len() <= running.len() / 2 {
+            world.keep(&left);
+            running = left.iter().map(|&env| running[env]).collect();
+        }
     }
-    times.sort_by(f64::total_cmp);
-    let p95 = times
-        .len()
-        .saturating_mul(95)
-        .div_ceil(100)
-        .saturating_sub(1);
-    Ok(Report {
-        episodes,
-        success: times.len() as f64 / episodes as f64,
-        time_to_target_mean_s: mean(&times),
-        time_to_target_p95_s: times.get(p95).copied().unwrap_or(0.0),
-        path_ratio: mean(&ratios),
-        mean_speed: walked / times.iter().sum::<f64>().max(1e-9),
-        turn_delay_mean_s: mean(&delays),
-    })
+    Ok(found.report(task, count))
+}
+
+impl Found {
+    /// A step of a character under way to its target.
+    fn reaching(&mut self, world: &mut CpuWorld, env: usize, episode: &mut Episode, step: u32) {
+        let task = world.rules.task;
+        let near = distance(world, &world.real, env) <= LOITER_DISTANCE;
+        episode.near = if near { episode.near + 1 } else { 0 };
+        let ended = world.ended[env];
+        episode.loiters |= episode.near > LOITER_STEPS && ended != end::REACHED;
+        if ended == end::RUNNING {
+            return;
+        }
+        self.steps += f64::from(step);
+        self.loiterers += usize::from(episode.loiters);
+        self.collisions += usize::from(ended == end::COLLIDED);
+        episode.phase = Phase::Done;
+        if ended == end::REACHED {
+            let path = world.field(real::TRAVELLED, env);
+            let straight = world.field(real::X, env).hypot(world.field(real::Z, env));
+            self.times.push(f64::from(step as f32 * SECONDS_A_STEP));
+            self.ratios.push(f64::from(path / straight));
+            self.walked += f64::from(path);
+            if let Task::Plane(_) = task {
+                send_elsewhere(world, env);
+                episode.phase = Phase::Turning { since: step };
+            }
+        }
+    }
+
+    /// A step of a character whose target has moved, `waited` steps ago.
+    fn turning(
+        &mut self,
+        world: &CpuWorld,
+        before: &[f32],
+        env: usize,
+        episode: &mut Episode,
+        waited: u32,
+    ) {
+        let nearer = distance(world, before, env) - distance(world, &world.real, env);
+        if nearer / SECONDS_A_STEP >= NEARING || waited >= PATIENCE {
+            self.delays.push(f64::from(waited as f32 * SECONDS_A_STEP));
+            episode.phase = Phase::Done;
+        }
+    }
+
+    fn report(mut self, task: Task, episodes: usize) -> Report {
+        self.times.sort_by(f64::total_cmp);
+        let p95 = (self.times.len() * 95).div_ceil(100).saturating_sub(1);
+        let share = |count: usize| count as f64 / episodes as f64;
+        Report {
+            episodes,
+            success: share(self.times.len()),
+            collision: share(self.collisions),
+            loiter: share(self.loiterers),
+            time_to_target_mean_s: mean(&self.times),
+            time_to_target_p95_s: self.times.get(p95).copied().unwrap_or(0.0),
+            path_ratio: mean(&self.ratios),
+            mean_speed: self.walked / self.times.iter().sum::<f64>().max(1e-9),
+            episode_length_mean_s: self.steps * f64::from(SECONDS_A_STEP) / episodes as f64,
+            turn_delay_mean_s: match task {
+                Task::Plane(_) => Some(mean(&self.delays)),
+                Task::Obstacles(_) => None,
+            },
+        }
+    }
+}
+
+/// From a character to its target, m, in a state `real` of the world.
+fn distance(world: &CpuWorld, real: &[f32], env: usize) -> f32 {
+    let at = |field: usize| real[field * world.rules.envs + env];
+    let x = at(real::TARGET_X) - at(real::X);
+    x.hypot(at(real::TARGET_Z) - at(real::Z))
 }
 
 /// 0 of nothing, so that reports stay plain numbers.
@@ -205,67 +235,19 @@ fn mean(values: &[f64]) -> f64 {
 
 /// Moves one character's target to a random place of the task's square around it, at least 2 m
 /// (or two fifths of the square's half side) away, so that there is something to turn to.
-fn send_elsewhere(world: &mut CpuWorld, env: usize, task: Plane) {
+fn send_elsewhere(world: &mut CpuWorld, env: usize) {
     const STREAM: u32 = 0x5455_524e;
-    let envs = world.envs();
-    let bits = (0..).map(|draw| random4(EPISODES_SEED, env as u32, draw, STREAM));
+    let (envs, half_side) = (world.rules.envs, world.rules.task.half_side(LEVELS - 1));
+    // Keyed by where it stands, which does not change when others leave the batch.
+    let key = world.field(real::X, env).to_bits();
+    let bits = (0..).map(|draw| random4(EPISODES_SEED, key, draw, STREAM));
     let places =
-        bits.map(|bits| [bits[0], bits[1]].map(|b| (2.0 * uniform01(b) - 1.0) * task.half_side));
-    let least = (task.half_side * 0.4).min(2.0);
+        bits.map(|bits| [bits[0], bits[1]].map(|b| (2.0 * uniform01(b) - 1.0) * half_side));
+    let least = (half_side * 0.4).min(2.0);
     let place = places
         .take(64)
         .find(|[x, z]| x.hypot(*z) >= least)
-        .unwrap_or([task.half_side; 2]);
-    world.real[real::TARGET_X * envs + env] = world.real[real::X * envs + env] + place[0];
-    world.real[real::TARGET_Z * envs + env] = world.real[real::Z * envs + env] + place[1];
-}
-
-/// The walks of the first `episodes` evaluation episodes, turned so that each starts facing +z.
-pub fn walks(
-    controller: &dyn Controller,
-    database: &Arc<Database>,
-    task: Plane,
-    episodes: usize,
-) -> Result<Vec<Walk>> {
-    let mut world = CpuWorld::fresh(database.clone(), task, episodes, EPISODES_SEED);
-    let field = |world: &CpuWorld, field: usize, env: usize| world.real[field * episodes + env];
-    let headings: Vec<[f32; 2]> = (0..episodes)
-        .map(|env| {
-            [
-                field(&world, real::HEADING_X, env),
-                field(&world, real::HEADING_Z, env),
-            ]
-        })
-        .collect();
-    let at = |world: &CpuWorld, env: usize, x: usize, z: usize| {
-        to_local([field(world, x, env), field(world, z, env)], headings[env])
-    };
-    let mut walks: Vec<Walk> = (0..episodes)
-        .map(|env| Walk {
-            points: vec![[0.0; 2]],
-            target: at(&world, env, real::TARGET_X, real::TARGET_Z),
-            reached: false,
-        })
-        .collect();
-    for _ in 0..task.max_steps {
-        let observation = tensors::read(world.observe())?;
-        world.play(&controller.act(&observation)?);
-        for (env, walk) in walks
-            .iter_mut()
-            .enumerate()
-            .filter(|(_, walk)| !walk.reached)
-        {
-            walk.points.push(at(&world, env, real::X, real::Z));
-            walk.reached = world.ended[env] == end::REACHED;
-        }
-        if walks.iter().all(|walk| walk.reached) {
-            break;
-        }
-    }
-    Ok(walks)
-}
-
-/// Seconds of a walk.
-pub fn seconds(walk: &Walk) -> f32 {
-    (walk.points.len() - 1) as f32 * SECONDS_A_STEP
+        .unwrap_or([half_side; 2]);
+    world.real[real::TARGET_X * envs + env] = world.field(real::X, env) + place[0];
+    world.real[real::TARGET_Z * envs + env] = world.field(real::Z, env) + place[1];
 }

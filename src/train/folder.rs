@@ -16,6 +16,9 @@ pub struct Summary {
     /// Over the evaluation episodes, at the end.
     pub success: f64,
     pub time_to_target_mean_s: f64,
+    /// Of the curriculum, at the end; the success is of the hardest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub level: Option<u32>,
     pub device: String,
     pub seed: u32,
     /// `steps`, `time`, `success`, `interrupt` or `failure`.
@@ -128,7 +131,7 @@ impl Folder {
     }
 
     pub fn read_config(&self) -> Result<Config> {
-        Ok(Config::from_file(&self.config_path(), Default::default())?)
+        Ok(Config::of_run(&self.config_path())?)
     }
 
     pub fn write_summary(&self, summary: &Summary) -> Result<()> {

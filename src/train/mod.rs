@@ -1,7 +1,9 @@
 //! A training run: what was asked for, the loop, what it leaves behind.
 
+pub mod ablation;
 pub mod checkpoint;
 pub mod config;
+pub mod controller;
 pub mod data;
 pub mod evaluate;
 pub mod folder;
@@ -9,3 +11,4 @@ pub mod milestones;
 pub mod progress;
 pub mod record;
 pub mod trainer;
+pub mod walks;

@@ -42,8 +42,10 @@ impl Progress {
             .map_or(by_steps, |max| by_steps.min(max - row.wall_s))
             .max(0.0);
         let line = format!(
-            "{:>9} steps  success {:>5.1} %  return {:>7.1}  {:>7.0} steps/s  {} gone, at most {} left",
+            "{:>9} steps{}  success {:>5.1} %  return {:>7.1}  {:>7.0} steps/s  {} gone, at most {} left",
             row.steps,
+            row.level
+                .map_or(String::new(), |level| format!("  level {level}")),
             100.0 * success,
             episode_return,
             row.steps_per_s,

@@ -16,10 +16,19 @@ pub struct Row {
     pub steps: u64,
     /// Seconds of training so far, over all resumptions.
     pub wall_s: f64,
+    /// Of the curriculum, in this update.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub level: Option<u32>,
     /// Episodes that ended in this update.
     pub episodes: f64,
     /// Means over those episodes; nothing if none ended.
     pub success: Option<f64>,
+    /// Ran into an obstacle.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub collision: Option<f64>,
+    /// Ran out of steps.
+    #[serde(default)]
+    pub truncation: Option<f64>,
     pub episode_return: Option<f64>,
     /// Steps.
     pub episode_length: Option<f64>,
@@ -59,7 +68,10 @@ impl Row {
             ("time/learn_s", self.learn_s),
         ];
         let sometimes = [
+            ("charts/level", self.level.map(f64::from)),
             ("charts/success", self.success),
+            ("charts/collision", self.collision),
+            ("charts/truncation", self.truncation),
             ("charts/episodic_return", self.episode_return),
             ("charts/episodic_length", self.episode_length),
             ("evaluation/success", self.evaluated_success),
@@ -110,16 +122,26 @@ impl Recorder {
         crate::store::write_whole(&path, text.as_bytes())?;
         let lines = File::options().append(true).open(&path);
         let lines = lines.with_context(|| format!("cannot write {}", path.display()))?;
-        let events = match known {
-            [] => EventWriter::create(folder, unix_time())?,
-            _ => EventWriter::append(folder, unix_time())
-                .context("move TensorBoard's file away to go on without it")?,
-        };
-        Ok(Recorder {
+        let now = unix_time();
+        let mut recorder = Recorder {
             lines,
             path,
-            events,
-        })
+            events: EventWriter::create(folder, now)?,
+        };
+        // As if the run had gone on without the pause until now.
+        let start = now - known.last().map_or(0.0, |row| row.wall_s);
+        for row in known {
+            recorder.show(row, start + row.wall_s)?;
+        }
+        recorder.events.flush()?;
+        Ok(recorder)
+    }
+
+    fn show(&mut self, row: &Row, time: f64) -> Result<()> {
+        for (tag, value) in row.scalars() {
+            self.events.scalar(tag, row.steps, time, value)?;
+        }
+        Ok(())
     }
 
     pub fn write(&mut self, row: &Row) -> Result<()> {
@@ -128,10 +150,7 @@ impl Recorder {
         self.lines
             .write_all(line.as_bytes())
             .with_context(|| format!("cannot write {}", self.path.display()))?;
-        let now = unix_time();
-        for (tag, value) in row.scalars() {
-            self.events.scalar(tag, row.steps, now, value)?;
-        }
+        self.show(row, unix_time())?;
         self.events.flush()?;
         Ok(())
     }

@@ -2,18 +2,21 @@
 
 use super::checkpoint::{Checkpoint, Header};
 use super::config::Config;
-use super::evaluate::{Report, Trained, evaluate};
+use super::controller::Trained;
+use super::evaluate::{Report, hardest};
 use super::folder::{Folder, Summary};
 use super::milestones;
 use super::progress::Progress;
 use super::record::{self, Recorder, Row};
 use crate::gpu::Device;
-use crate::kernels::layout::{OBSERVATION, whole};
+use crate::kernels::layout::whole;
+use crate::kernels::tally;
 use crate::motion::database::Database;
 use crate::ppo::rollout::{self, Rollout};
 use crate::ppo::update::{Learner, Losses};
 use crate::tensors;
-use crate::world::{self, Tally, World};
+use crate::world::curriculum::Curriculum;
+use crate::world::{self, Setup, Tally, Task, World};
 use anyhow::{Context, Result, bail};
 use burn::tensor::Tensor;
 use serde::{Deserialize, Serialize};
@@ -21,7 +24,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-pub const TASK: &str = "plane";
 /// Episodes of an evaluation.
 pub const EPISODES: usize = 1000;
 /// Fewer, to see whether all of them are worth running.
@@ -31,7 +33,7 @@ const DOUBT: f64 = 0.03;
 /// Training success this far below the goal is worth a glance.
 const NEAR: f64 = 0.15;
 /// What an update reads back.
-const NUMBERS: [&str; 11] = [
+const NUMBERS: [&str; 13] = [
     "policy loss",
     "value loss",
     "entropy",
@@ -40,27 +42,37 @@ const NUMBERS: [&str; 11] = [
     "explained variance",
     "number of episodes",
     "number of successes",
+    "number of collisions",
+    "number of truncations",
     "number of steps",
     "summed return",
     "sum of the parameters",
 ];
 /// Recent success and return are means over at least so many episodes.
-const RECENT: f32 = 500.0;
+const RECENT: f64 = 500.0;
 
 /// What the trainer remembers from update to update; part of a checkpoint.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
-    /// Tallies of the latest updates: episodes, successes, steps, returns.
-    recent: Vec<[f32; 4]>,
-    /// Recent success and (negative) length of the best policy so far.
-    best: Option<(f64, f64)>,
+    /// Of the latest updates.
+    recent: Vec<Tally>,
+    /// Level, recent success and (negative) length of the best policy so far.
+    best: Option<(u32, f64, f64)>,
+    pub curriculum: Curriculum,
 }
 
 impl Memory {
+    fn new(task: &Task) -> Self {
+        Memory {
+            recent: Vec::new(),
+            best: None,
+            curriculum: Curriculum::on(task.first_level()),
+        }
+    }
+
     fn remember(&mut self, tally: Tally) {
-        self.recent
-            .push([tally.episodes, tally.successes, tally.steps, tally.returns]);
-        let episodes = |recent: &[[f32; 4]]| recent.iter().map(|t| t[0]).sum::<f32>();
+        self.recent.push(tally);
+        let episodes = |recent: &[Tally]| recent.iter().map(|t| t.episodes).sum::<f64>();
         while self.recent.len() > 1 && episodes(&self.recent[1..]) >= RECENT {
             self.recent.remove(0);
         }
@@ -68,17 +80,20 @@ impl Memory {
 
     /// Means over the recent episodes: success, steps, return. `None` before the first ended.
     fn means(&self) -> Option<[f64; 3]> {
-        let sum = |i: usize| self.recent.iter().map(|t| f64::from(t[i])).sum::<f64>();
-        (sum(0) > 0.0).then(|| [1, 2, 3].map(|i| sum(i) / sum(0)))
+        let sum = |of: fn(&Tally) -> f64| self.recent.iter().map(of).sum::<f64>();
+        let episodes = sum(|t| t.episodes);
+        let sums = [sum(|t| t.successes), sum(|t| t.steps), sum(|t| t.returns)];
+        (episodes > 0.0).then(|| sums.map(|sum| sum / episodes))
     }
 
-    /// Whether the recent episodes are the best so far: more success, then shorter.
+    /// Whether the recent episodes are the best so far: a higher level, then more success, then
+    /// shorter.
     fn improved(&mut self) -> bool {
         let Some([success, length, _]) = self.means() else {
             return false;
         };
         // Whole percents, so that noise in the success does not hide that the walks get shorter.
-        let score = ((success * 100.0).floor(), -length);
+        let score = (self.curriculum.passed, (success * 100.0).floor(), -length);
         let better = self.best.is_none_or(|best| score > best);
         if better {
             self.best = Some(score);
@@ -138,17 +153,19 @@ impl<'a> Run<'a> {
         from: Option<Checkpoint>,
     ) -> Result<Self> {
         let ppo = &config.ppo;
-        let mut world = world::open(
-            device,
-            database,
-            config.plane,
-            ppo.envs,
-            ppo.horizon,
-            config.seed,
-        );
-        let (mut steps, mut earlier_s, mut memory) = (0, 0.0, Memory::default());
+        let mut memory = Memory::new(&config.task);
+        let setup = Setup {
+            task: config.task,
+            envs: ppo.envs,
+            horizon: ppo.horizon,
+            seed: config.seed,
+            level: memory.curriculum.level(),
+        };
+        let mut world = world::open(device, database, &setup);
+        let (mut steps, mut earlier_s) = (0, 0.0);
+        let width = config.task.width();
         let learner = match from {
-            None => Learner::new(ppo, &device.tensors(), config.seed),
+            None => Learner::new(ppo, width, &device.tensors(), config.seed)?,
             Some(checkpoint) => {
                 let (envs, frames) = (ppo.envs, database.frames());
                 let shown = &checkpoint.header.world.whole[whole::FRAME * envs..][..envs];
@@ -160,7 +177,7 @@ impl<'a> Run<'a> {
                 world.restore(&checkpoint.header.world);
                 (steps, earlier_s) = (checkpoint.header.steps, checkpoint.header.wall_s);
                 memory = checkpoint.header.memory.clone();
-                checkpoint.learner(ppo, &device.tensors())
+                checkpoint.learner(ppo, &device.tensors())?
             }
         };
         let rows = if steps > 0 {
@@ -235,7 +252,7 @@ impl<'a> Run<'a> {
         )?;
         let losses = self.learner.update(&rollout, ppo);
         // The one read-back of an update. The parameters' sum shows whether the last step broke them.
-        let parameters = self.learner.parameters.clone().sum();
+        let parameters = self.learner.parameters.clone().sum_dim(0);
         let numbers = Tensor::cat(vec![losses, self.world.tally(), parameters], 0);
         let numbers = tensors::read(numbers)?;
         self.steps += ppo.batch() as u64;
@@ -249,27 +266,31 @@ impl<'a> Run<'a> {
             );
         }
         let losses = Losses::from(&numbers);
-        let tally = Tally {
-            episodes: numbers[6],
-            successes: numbers[7],
-            steps: numbers[8],
-            returns: numbers[9],
-        };
+        let sums: [f32; tally::SUMS] = std::array::from_fn(|i| numbers[6 + i]);
+        let tally = Tally::from(sums);
         self.memory.remember(tally);
         let row = self.row(losses, tally, &rollout, start.elapsed().as_secs_f64());
+        if let Task::Obstacles(task) = &self.config.task
+            && self.memory.curriculum.advance(&tally, task, ppo.envs)
+        {
+            self.world.set_level(self.memory.curriculum.level());
+        }
         self.learner.adapt(losses.kl, self.steps, ppo);
         Ok(row)
     }
 
     fn row(&self, losses: Losses, tally: Tally, rollout: &Rollout, total: f64) -> Row {
-        let per_episode =
-            |sum: f32| (tally.episodes > 0.0).then(|| f64::from(sum / tally.episodes));
+        let per_episode = |sum: f64| (tally.episodes > 0.0).then(|| sum / tally.episodes);
+        let obstacles = matches!(self.config.task, Task::Obstacles(_));
         Row {
             update: self.learner.updates,
             steps: self.steps,
             wall_s: self.wall_s(),
-            episodes: tally.episodes.into(),
+            level: obstacles.then(|| self.memory.curriculum.level()),
+            episodes: tally.episodes,
             success: per_episode(tally.successes),
+            collision: per_episode(tally.collisions).filter(|_| obstacles),
+            truncation: per_episode(tally.truncations),
             episode_return: per_episode(tally.returns),
             episode_length: per_episode(tally.steps),
             policy_loss: losses.policy,
@@ -306,8 +327,8 @@ impl<'a> Run<'a> {
 
     fn judge(&self, episodes: usize) -> Result<Report> {
         let parameters = tensors::read(self.learner.parameters.clone())?;
-        let policy = Trained::new(&self.config.ppo.hidden, &parameters);
-        evaluate(&policy, self.database, self.config.plane, episodes)
+        let policy = Trained::new(&self.learner.shape, &parameters);
+        hardest(&policy, self.database, self.config.task, episodes)
     }
 
     fn write_down(&mut self, row: Row) -> Result<()> {
@@ -338,12 +359,11 @@ impl<'a> Run<'a> {
 
     fn save(&self, path: &std::path::Path) -> Result<()> {
         let header = Header {
-            task: TASK.to_string(),
-            observation: OBSERVATION,
+            task: self.config.task,
+            observation: self.config.task.width(),
             database: self.database.fingerprint,
-            hidden: self.config.ppo.hidden.clone(),
+            network: self.config.ppo.network.clone(),
             ppo: self.config.ppo.to_toml(),
-            plane: self.config.plane,
             seed: self.config.seed,
             steps: self.steps,
             wall_s: self.wall_s(),
@@ -360,12 +380,14 @@ impl<'a> Run<'a> {
     /// Final evaluation, summary and pictures. After a failure only the summary is written.
     fn conclude(self, outcome: Result<&'static str>) -> Result<Summary> {
         let wall_s = self.wall_s();
+        let obstacles = matches!(self.config.task, Task::Obstacles(_));
         let mut summary = Summary {
             steps: self.steps,
             wall_s,
             steps_per_s: self.steps as f64 / wall_s.max(1e-9),
             success: 0.0,
             time_to_target_mean_s: 0.0,
+            level: obstacles.then(|| self.memory.curriculum.level()),
             device: self.device.name(),
             seed: self.config.seed,
             stopped_by: "failure",
@@ -377,7 +399,7 @@ impl<'a> Run<'a> {
                 summary.success = report.success;
                 summary.time_to_target_mean_s = report.time_to_target_mean_s;
                 self.folder.write_summary(&summary)?;
-                milestones::draw(self.folder, &self.rows, self.database, self.config.plane)?;
+                milestones::draw(self.folder, &self.rows, self.database, self.config.task)?;
                 Ok(summary)
             }
             Err(error) => {

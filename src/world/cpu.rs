@@ -1,135 +1,156 @@
 //! A batch of worlds on the CPU: the twins, with the pruned search in place of the plain one.
 
-use super::{Plane, Snapshot, Values, World};
-use crate::kernels::layout::{OBSERVATION, end, real, whole};
-use crate::kernels::{act, gae, observe, query, reset, step, tally};
+use super::rules::Rules;
+use super::{Setup, Snapshot, Values, World};
+use crate::kernels::layout::{AXES, CELLS, MAPS, boxes, real, whole};
+use crate::kernels::{
+    act, collide, gae, hits, observe, query, reset, scatter, sense, step, tally, wander,
+};
 use crate::motion::database::{Database, PADDED};
 use crate::motion::features::TRAJECTORY;
 use crate::search::Index;
-use crate::tensors::upload;
+use crate::tensors::{upload, values};
 use burn::tensor::{Device, Tensor};
 use std::sync::Arc;
 
 pub struct CpuWorld {
     database: Arc<Database>,
     index: Index,
-    task: Plane,
-    envs: usize,
-    horizon: usize,
-    seed: u32,
-    clock: u32,
+    pub rules: Rules,
+    /// `[2][TRAJECTORY]`: mean and scale of the trajectory features.
+    normal: Vec<f32>,
     /// `[real::FIELDS][envs]`, see [`crate::kernels::layout`].
     pub real: Vec<f32>,
     /// `[whole::FIELDS][envs]`
     pub whole: Vec<u32>,
+    /// `[envs][boxes::FIELDS][count]`
+    pub boxes: Vec<f32>,
+    /// `[envs][AXES][count]`
+    pub drift: Vec<f32>,
+    /// `[envs][MAPS][CELLS]`
+    pub maps: Vec<u32>,
     queries: Vec<[f32; PADDED]>,
     matched: Vec<u32>,
     /// `[horizon][envs]`
     reward: Vec<f32>,
     /// `[horizon][envs]`, how each step ended.
     pub ended: Vec<u32>,
-    /// `[envs][OBSERVATION]`
-    truncated: Vec<f32>,
+    /// `[final_steps][envs][width]`
+    last: Vec<f32>,
     device: Device,
 }
 
 impl CpuWorld {
-    pub fn new(
-        database: Arc<Database>,
-        task: Plane,
-        envs: usize,
-        horizon: usize,
-        seed: u32,
-    ) -> Self {
+    /// Worlds at the start of an episode; the limits of these first episodes are up to `spread`
+    /// early.
+    pub fn new(database: Arc<Database>, setup: &Setup, spread: u32) -> Self {
+        let (envs, rules) = (setup.envs, setup.rules(&database));
+        let count = setup.task.obstacles();
         let mut world = CpuWorld {
             index: Index::build(&database.rows()),
-            task,
-            envs,
-            horizon,
-            seed,
-            clock: 0,
+            normal: database.normalisation.trajectory(),
             real: vec![0.0; real::FIELDS * envs],
             whole: vec![0; whole::FIELDS * envs],
+            boxes: vec![0.0; envs * boxes::FIELDS * count],
+            drift: vec![0.0; envs * AXES * count],
+            maps: vec![0; envs * MAPS * CELLS],
             queries: vec![[0.0; PADDED]; envs],
             matched: vec![0; envs],
-            reward: vec![0.0; horizon * envs],
-            ended: vec![0; horizon * envs],
-            truncated: vec![0.0; envs * OBSERVATION],
+            reward: vec![0.0; setup.horizon * envs],
+            ended: vec![0; setup.horizon * envs],
+            last: vec![0.0; rules.final_steps() * envs * setup.task.width()],
             device: Device::flex(),
+            rules,
             database,
         };
-        world.reset(true, task.max_steps);
+        world.begin(true, spread);
         world
     }
 
-    /// Worlds that all start their first episode at age 0, for episodes that are counted.
-    pub fn fresh(database: Arc<Database>, task: Plane, envs: usize, seed: u32) -> Self {
-        let mut world = Self::new(database, task, envs, 1, seed);
-        world.reset(true, 0);
-        world
-    }
-
-    /// Where this step's rewards and ends go in the rollout.
-    fn offset(&self) -> usize {
-        self.clock as usize % self.horizon * self.envs
-    }
-
-    /// Starts new episodes, `everywhere` or where this step ended one, at ages below `spread`.
-    fn reset(&mut self, everywhere: bool, spread: u32) {
-        let params = reset::Params {
-            envs: self.envs as u32,
-            candidates: self.database.candidates.len() as u32,
-            seed: self.seed,
-            clock: self.clock,
-            offset: self.offset() as u32,
-            everywhere: everywhere.into(),
-            spread,
-            half_side: self.task.half_side,
-            reach: self.task.reach,
-        };
+    /// Starts new episodes, `everywhere` or where this step ended one.
+    fn begin(&mut self, everywhere: bool, spread: u32) {
+        let obstacles = self.rules.task.obstacles() > 0;
+        if obstacles {
+            let params = self.rules.scatter(everywhere);
+            scatter::twin(&self.ended, &mut self.boxes, &mut self.drift, &params);
+        }
         reset::twin(
             &self.database.candidates,
             &self.ended,
+            &self.boxes,
             &mut self.real,
             &mut self.whole,
+            &self.rules.reset(everywhere, spread),
+        );
+        if obstacles {
+            self.sense(true);
+        }
+    }
+
+    fn sense(&mut self, begun: bool) {
+        let params = self.rules.sense(begun);
+        sense::twin(
+            &self.boxes,
+            &self.real,
+            &self.whole,
+            &mut self.maps,
             &params,
         );
     }
 
-    fn see(&self, observation: &mut [f32], only: u32) {
-        let params = observe::Params {
-            envs: self.envs as u32,
-            offset: self.offset() as u32,
-            only,
-        };
+    /// Observations `[envs][width]` of all environments.
+    pub fn observation(&self) -> Vec<f32> {
+        let mut observation = vec![0.0; self.rules.envs * self.rules.task.width()];
+        self.see(&mut observation, &self.rules.observe());
+        observation
+    }
+
+    fn see(&self, observation: &mut [f32], params: &observe::Params) {
         observe::twin(
             &self.database.features,
             &self.real,
             &self.whole,
             &self.ended,
+            &self.maps,
             observation,
-            &params,
+            params,
         );
     }
 
     /// Plays one step without starting anew what it ended. `action` is `[envs][TRAJECTORY]`.
     pub fn play(&mut self, action: &[f32]) {
-        let envs = self.envs as u32;
+        let obstacles = self.rules.task.obstacles() > 0;
+        if obstacles {
+            hits::twin(
+                action,
+                &self.normal,
+                &self.boxes,
+                &self.real,
+                &mut self.whole,
+                &self.rules.hits(),
+            );
+        }
         query::twin(
             &self.database.features,
             &self.whole,
             action,
             &mut self.queries,
-            &query::Params { envs },
+            &self.rules.query(),
         );
         self.index.nearest_all(&self.queries, &mut self.matched);
-        let params = step::Params {
-            envs,
-            offset: self.offset() as u32,
-            max_steps: self.task.max_steps,
-            reach: self.task.reach,
-            bonus: self.task.bonus,
-        };
+        if obstacles {
+            collide::twin(
+                &self.database.candidates,
+                &self.matched,
+                &self.database.path,
+                &self.boxes,
+                &self.drift,
+                &self.real,
+                &mut self.whole,
+                &self.rules.collide(),
+            );
+            wander::twin(&mut self.boxes, &mut self.drift, &self.rules.wander());
+        }
         step::twin(
             &self.database.candidates,
             &self.matched,
@@ -138,8 +159,31 @@ impl CpuWorld {
             &mut self.whole,
             &mut self.reward,
             &mut self.ended,
-            &params,
+            &self.rules.step(),
         );
+        if obstacles {
+            self.sense(false);
+        }
+    }
+
+    /// One number of the floating-point state.
+    pub fn field(&self, field: usize, env: usize) -> f32 {
+        self.real[field * self.rules.envs + env]
+    }
+
+    /// Goes on with these environments alone.
+    pub fn keep(&mut self, envs: &[usize]) {
+        let (old, count) = (self.rules.envs, self.rules.task.obstacles());
+        self.real = gather(&self.real, old, 1, envs);
+        self.whole = gather(&self.whole, old, 1, envs);
+        self.boxes = gather(&self.boxes, old, boxes::FIELDS * count, envs);
+        self.drift = gather(&self.drift, old, AXES * count, envs);
+        self.maps = gather(&self.maps, old, MAPS * CELLS, envs);
+        self.reward = gather(&self.reward, old, 1, envs);
+        self.ended = gather(&self.ended, old, 1, envs);
+        self.queries.truncate(envs.len());
+        self.matched.truncate(envs.len());
+        self.rules.envs = envs.len();
     }
 
     fn tensor<const D: usize>(&self, values: Vec<f32>, shape: [usize; D]) -> Tensor<D> {
@@ -147,77 +191,66 @@ impl CpuWorld {
     }
 }
 
-/// Values of a CPU tensor: there is no device to lose and f32 is the only type in use.
-fn values<const D: usize>(tensor: Tensor<D>) -> Vec<f32> {
-    match crate::tensors::read(tensor) {
-        Ok(values) => values,
-        Err(error) => unreachable!("{error}"),
+/// Rows of `width` values of the environments `envs`, from all `[..][old][width]`.
+fn gather<T: Copy>(all: &[T], old: usize, width: usize, envs: &[usize]) -> Vec<T> {
+    let mut kept = Vec::with_capacity(all.len() / old * envs.len());
+    for field in all.chunks_exact((old * width).max(1)) {
+        for &env in envs {
+            kept.extend_from_slice(&field[env * width..][..width]);
+        }
     }
+    kept
 }
 
 impl World for CpuWorld {
-    fn envs(&self) -> usize {
-        self.envs
-    }
-
     fn observe(&mut self) -> Tensor<2> {
-        let mut observation = vec![0.0; self.envs * OBSERVATION];
-        self.see(&mut observation, end::RUNNING);
-        self.tensor(observation, [self.envs, OBSERVATION])
+        let shape = [self.rules.envs, self.rules.task.width()];
+        self.tensor(self.observation(), shape)
     }
 
     fn act(&mut self, mean: Tensor<2>, log_std: Tensor<1>) -> (Tensor<2>, Tensor<1>) {
-        let (mut action, mut log_prob) = (vec![0.0; self.envs * TRAJECTORY], vec![0.0; self.envs]);
-        let params = act::Params {
-            envs: self.envs as u32,
-            seed: self.seed,
-            clock: self.clock,
-        };
+        let envs = self.rules.envs;
+        let (mut action, mut log_prob) = (vec![0.0; envs * TRAJECTORY], vec![0.0; envs]);
         act::twin(
             &values(mean),
             &values(log_std),
             &mut action,
             &mut log_prob,
-            &params,
+            &self.rules.act(),
         );
         (
-            self.tensor(action, [self.envs, TRAJECTORY]),
-            self.tensor(log_prob, [self.envs]),
+            self.tensor(action, [envs, TRAJECTORY]),
+            self.tensor(log_prob, [envs]),
         )
     }
 
     fn step(&mut self, action: Tensor<2>) {
         self.play(&values(action));
-        let mut truncated = std::mem::take(&mut self.truncated);
-        self.see(&mut truncated, end::TRUNCATED);
-        self.truncated = truncated;
-        self.reset(false, 0);
-        self.clock += 1;
+        let mut last = std::mem::take(&mut self.last);
+        self.see(&mut last, &self.rules.observe_last());
+        self.last = last;
+        self.begin(false, 0);
+        self.rules.clock += 1;
     }
 
-    fn truncated(&mut self) -> Tensor<2> {
-        self.tensor(self.truncated.clone(), [self.envs, OBSERVATION])
+    fn last(&mut self) -> Tensor<2> {
+        let width = self.rules.task.width();
+        self.tensor(self.last.clone(), [self.last.len() / width, width])
     }
 
     fn judge(&mut self, judged: Values, gamma: f32, lambda: f32) -> (Tensor<1>, Tensor<1>) {
-        let samples = self.horizon * self.envs;
+        let samples = self.reward.len();
         let (mut advantage, mut target) = (vec![0.0; samples], vec![0.0; samples]);
-        let scale = values(judged.scale);
         gae::twin(
             &self.reward,
             &self.ended,
             &values(judged.observed),
             &values(judged.next),
             &values(judged.last),
-            &scale,
+            &values(judged.scale),
             &mut advantage,
             &mut target,
-            &gae::Params {
-                envs: self.envs as u32,
-                steps: self.horizon as u32,
-                gamma,
-                lambda,
-            },
+            &self.rules.gae(gamma, lambda),
         );
         (
             self.tensor(advantage, [samples]),
@@ -226,29 +259,34 @@ impl World for CpuWorld {
     }
 
     fn tally(&mut self) -> Tensor<1> {
-        let mut sums = [0.0; 4];
-        tally::twin(
-            &mut self.real,
-            &mut self.whole,
-            &mut sums,
-            &tally::Params {
-                envs: self.envs as u32,
-            },
-        );
-        self.tensor(sums.to_vec(), [4])
+        let mut sums = [0.0; tally::SUMS];
+        let params = self.rules.tally();
+        tally::twin(&mut self.real, &mut self.whole, &mut sums, &params);
+        self.tensor(sums.to_vec(), [tally::SUMS])
+    }
+
+    fn set_level(&mut self, level: u32) {
+        self.rules.level = level;
     }
 
     fn snapshot(&self) -> anyhow::Result<Snapshot> {
         Ok(Snapshot {
-            clock: self.clock,
+            clock: self.rules.clock,
+            level: self.rules.level,
             real: self.real.clone(),
             whole: self.whole.clone(),
+            boxes: self.boxes.clone(),
+            drift: self.drift.clone(),
+            maps: self.maps.clone(),
         })
     }
 
     fn restore(&mut self, snapshot: &Snapshot) {
-        self.clock = snapshot.clock;
+        (self.rules.clock, self.rules.level) = (snapshot.clock, snapshot.level);
         self.real.clone_from(&snapshot.real);
         self.whole.clone_from(&snapshot.whole);
+        self.boxes.clone_from(&snapshot.boxes);
+        self.drift.clone_from(&snapshot.drift);
+        self.maps.clone_from(&snapshot.maps);
     }
 }

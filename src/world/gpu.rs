@@ -1,12 +1,14 @@
 //! A batch of worlds on the GPU: one launch after another on burn's own queue, nothing copied to
 //! the host.
 
-use super::{Plane, Snapshot, Values, World};
+use super::rules::Rules;
+use super::search::Search;
+use super::{Setup, Snapshot, Values, World};
 use crate::gpu::tensor::{from_buffer, to_buffer};
 use crate::gpu::{Buffer, Gpu};
-use crate::kernels::layout::{OBSERVATION, end, real, whole};
+use crate::kernels::layout::{AXES, CELLS, MAPS, boxes, real, whole};
 use crate::kernels::{
-    act, gae, observe, query, reset, search_exact, search_tile, search_wide, step, tally,
+    act, collide, gae, hits, observe, query, reset, scatter, sense, step, tally, wander,
 };
 use crate::motion::database::{Database, PADDED};
 use crate::motion::features::TRAJECTORY;
@@ -14,154 +16,173 @@ use burn::tensor::Tensor;
 
 pub struct GpuWorld {
     gpu: Gpu,
-    task: Plane,
-    envs: usize,
-    horizon: usize,
-    seed: u32,
-    clock: u32,
+    rules: Rules,
     candidates: Buffer<u32>,
     /// `[frames][PADDED]`
     features: Buffer<f32>,
     motion: Buffer<f32>,
+    /// `[frames][4]`
+    path: Buffer<f32>,
+    /// `[2][TRAJECTORY]`: mean and scale of the trajectory features.
+    normal: Buffer<f32>,
     /// `[real::FIELDS][envs]`, see [`crate::kernels::layout`].
     real: Buffer<f32>,
     /// `[whole::FIELDS][envs]`
     whole: Buffer<u32>,
+    /// `[envs][boxes::FIELDS][count]`
+    boxes: Buffer<f32>,
+    /// `[envs][AXES][count]`
+    drift: Buffer<f32>,
+    /// `[envs][MAPS][CELLS]`
+    maps: Buffer<u32>,
     queries: Buffer<f32>,
     search: Search,
     reward: Buffer<f32>,
     ended: Buffer<u32>,
-    truncated: Buffer<f32>,
+    /// `[final_steps][envs][width]`
+    last: Buffer<f32>,
 }
 
 impl GpuWorld {
-    pub fn new(
-        gpu: &Gpu,
-        database: &Database,
-        task: Plane,
-        envs: usize,
-        horizon: usize,
-        seed: u32,
-    ) -> Self {
+    /// Worlds at the start of an episode; the limits of these first episodes are up to `spread`
+    /// early.
+    pub fn new(gpu: &Gpu, database: &Database, setup: &Setup, spread: u32) -> Self {
+        let (envs, rules) = (setup.envs, setup.rules(database));
+        // Without obstacles a buffer still has to be bound.
+        let count = setup.task.obstacles().max(1);
+        let width = setup.task.width();
         let world = GpuWorld {
-            task,
-            envs,
-            horizon,
-            seed,
-            clock: 0,
             candidates: Buffer::from_slice(gpu, &database.candidates),
             features: Buffer::from_slice(gpu, database.features.as_flattened()),
             motion: Buffer::from_slice(gpu, bytemuck::cast_slice(&database.motion)),
+            path: Buffer::from_slice(gpu, database.path.as_flattened()),
+            normal: Buffer::from_slice(gpu, &database.normalisation.trajectory()),
             real: Buffer::zeroed(gpu, real::FIELDS * envs),
             whole: Buffer::zeroed(gpu, whole::FIELDS * envs),
+            boxes: Buffer::zeroed(gpu, envs * boxes::FIELDS * count),
+            drift: Buffer::zeroed(gpu, envs * AXES * count),
+            maps: Buffer::zeroed(gpu, envs * MAPS * CELLS),
             queries: Buffer::zeroed(gpu, envs * PADDED),
             search: Search::new(gpu, &database.rows(), envs),
-            reward: Buffer::zeroed(gpu, horizon * envs),
-            ended: Buffer::zeroed(gpu, horizon * envs),
-            truncated: Buffer::zeroed(gpu, envs * OBSERVATION),
+            reward: Buffer::zeroed(gpu, setup.horizon * envs),
+            ended: Buffer::zeroed(gpu, setup.horizon * envs),
+            last: Buffer::zeroed(gpu, rules.final_steps() * envs * width),
             gpu: gpu.clone(),
+            rules,
         };
-        world.reset(true);
+        world.begin(true, spread);
         world
     }
 
-    /// Where this step's rewards and ends go in the rollout.
-    fn offset(&self) -> u32 {
-        (self.clock as usize % self.horizon * self.envs) as u32
-    }
-
-    fn reset(&self, everywhere: bool) {
-        let params = reset::Params {
-            envs: self.envs as u32,
-            candidates: self.candidates.len() as u32,
-            seed: self.seed,
-            clock: self.clock,
-            offset: self.offset(),
-            everywhere: everywhere.into(),
-            spread: if everywhere { self.task.max_steps } else { 0 },
-            half_side: self.task.half_side,
-            reach: self.task.reach,
-        };
+    /// Starts new episodes, `everywhere` or where this step ended one.
+    fn begin(&self, everywhere: bool, spread: u32) {
+        let obstacles = self.rules.task.obstacles() > 0;
+        if obstacles {
+            let params = self.rules.scatter(everywhere);
+            scatter::launch(&self.gpu, &self.ended, &self.boxes, &self.drift, &params);
+        }
         reset::launch(
             &self.gpu,
             &self.candidates,
             &self.ended,
+            &self.boxes,
             &self.real,
             &self.whole,
-            &params,
+            &self.rules.reset(everywhere, spread),
+        );
+        if obstacles {
+            self.sense(true);
+        }
+    }
+
+    fn sense(&self, begun: bool) {
+        sense::launch(
+            &self.gpu,
+            &self.boxes,
+            &self.real,
+            &self.whole,
+            &self.maps,
+            &self.rules.sense(begun),
         );
     }
 
-    fn see(&self, observation: &Buffer<f32>, only: u32) {
-        let params = observe::Params {
-            envs: self.envs as u32,
-            offset: self.offset(),
-            only,
-        };
+    fn see(&self, observation: &Buffer<f32>, params: &observe::Params) {
         observe::launch(
             &self.gpu,
             &self.features,
             &self.real,
             &self.whole,
             &self.ended,
+            &self.maps,
             observation,
-            &params,
+            params,
         );
     }
 }
 
 impl World for GpuWorld {
-    fn envs(&self) -> usize {
-        self.envs
-    }
-
     fn observe(&mut self) -> Tensor<2> {
-        let observation = Buffer::empty(&self.gpu, self.envs * OBSERVATION);
-        self.see(&observation, end::RUNNING);
-        from_buffer(&self.gpu, &observation, [self.envs, OBSERVATION])
+        let shape = [self.rules.envs, self.rules.task.width()];
+        let observation = Buffer::empty(&self.gpu, shape[0] * shape[1]);
+        self.see(&observation, &self.rules.observe());
+        from_buffer(&self.gpu, &observation, shape)
     }
 
     fn act(&mut self, mean: Tensor<2>, log_std: Tensor<1>) -> (Tensor<2>, Tensor<1>) {
-        let action = Buffer::empty(&self.gpu, self.envs * TRAJECTORY);
-        let log_prob = Buffer::empty(&self.gpu, self.envs);
-        let params = act::Params {
-            envs: self.envs as u32,
-            seed: self.seed,
-            clock: self.clock,
-        };
+        let envs = self.rules.envs;
+        let action = Buffer::empty(&self.gpu, envs * TRAJECTORY);
+        let log_prob = Buffer::empty(&self.gpu, envs);
         act::launch(
             &self.gpu,
             &to_buffer(mean),
             &to_buffer(log_std),
             &action,
             &log_prob,
-            &params,
+            &self.rules.act(),
         );
         (
-            from_buffer(&self.gpu, &action, [self.envs, TRAJECTORY]),
-            from_buffer(&self.gpu, &log_prob, [self.envs]),
+            from_buffer(&self.gpu, &action, [envs, TRAJECTORY]),
+            from_buffer(&self.gpu, &log_prob, [envs]),
         )
     }
 
     fn step(&mut self, action: Tensor<2>) {
-        let envs = self.envs as u32;
+        let obstacles = self.rules.task.obstacles() > 0;
         let action = to_buffer(action);
+        if obstacles {
+            hits::launch(
+                &self.gpu,
+                &action,
+                &self.normal,
+                &self.boxes,
+                &self.real,
+                &self.whole,
+                &self.rules.hits(),
+            );
+        }
         query::launch(
             &self.gpu,
             &self.features,
             &self.whole,
             &action,
             &self.queries,
-            &query::Params { envs },
+            &self.rules.query(),
         );
         let matched = self.search.nearest(&self.gpu, &self.queries);
-        let params = step::Params {
-            envs,
-            offset: self.offset(),
-            max_steps: self.task.max_steps,
-            reach: self.task.reach,
-            bonus: self.task.bonus,
-        };
+        if obstacles {
+            collide::launch(
+                &self.gpu,
+                &self.candidates,
+                matched,
+                &self.path,
+                &self.boxes,
+                &self.drift,
+                &self.real,
+                &self.whole,
+                &self.rules.collide(),
+            );
+            wander::launch(&self.gpu, &self.boxes, &self.drift, &self.rules.wander());
+        }
         step::launch(
             &self.gpu,
             &self.candidates,
@@ -171,19 +192,23 @@ impl World for GpuWorld {
             &self.whole,
             &self.reward,
             &self.ended,
-            &params,
+            &self.rules.step(),
         );
-        self.see(&self.truncated, end::TRUNCATED);
-        self.reset(false);
-        self.clock += 1;
+        if obstacles {
+            self.sense(false);
+        }
+        self.see(&self.last, &self.rules.observe_last());
+        self.begin(false, 0);
+        self.rules.clock += 1;
     }
 
-    fn truncated(&mut self) -> Tensor<2> {
-        from_buffer(&self.gpu, &self.truncated, [self.envs, OBSERVATION])
+    fn last(&mut self) -> Tensor<2> {
+        let width = self.rules.task.width();
+        from_buffer(&self.gpu, &self.last, [self.last.len() / width, width])
     }
 
     fn judge(&mut self, values: Values, gamma: f32, lambda: f32) -> (Tensor<1>, Tensor<1>) {
-        let samples = self.horizon * self.envs;
+        let samples = self.reward.len();
         let advantage = Buffer::empty(&self.gpu, samples);
         let target = Buffer::empty(&self.gpu, samples);
         gae::launch(
@@ -196,12 +221,7 @@ impl World for GpuWorld {
             &to_buffer(values.scale),
             &advantage,
             &target,
-            &gae::Params {
-                envs: self.envs as u32,
-                steps: self.horizon as u32,
-                gamma,
-                lambda,
-            },
+            &self.rules.gae(gamma, lambda),
         );
         (
             from_buffer(&self.gpu, &advantage, [samples]),
@@ -210,122 +230,40 @@ impl World for GpuWorld {
     }
 
     fn tally(&mut self) -> Tensor<1> {
-        let sums = Buffer::empty(&self.gpu, 4);
-        tally::launch(
-            &self.gpu,
-            &self.real,
-            &self.whole,
-            &sums,
-            &tally::Params {
-                envs: self.envs as u32,
-            },
-        );
-        from_buffer(&self.gpu, &sums, [4])
+        let sums = Buffer::empty(&self.gpu, tally::SUMS);
+        let params = self.rules.tally();
+        tally::launch(&self.gpu, &self.real, &self.whole, &sums, &params);
+        from_buffer(&self.gpu, &sums, [tally::SUMS])
+    }
+
+    fn set_level(&mut self, level: u32) {
+        self.rules.level = level;
     }
 
     fn snapshot(&self) -> anyhow::Result<Snapshot> {
+        let count = self.rules.task.obstacles();
+        let (mut boxes, mut drift) = (self.boxes.read(&self.gpu)?, self.drift.read(&self.gpu)?);
+        boxes.truncate(self.rules.envs * boxes::FIELDS * count);
+        drift.truncate(self.rules.envs * AXES * count);
         Ok(Snapshot {
-            clock: self.clock,
+            clock: self.rules.clock,
+            level: self.rules.level,
             real: self.real.read(&self.gpu)?,
             whole: self.whole.read(&self.gpu)?,
+            boxes,
+            drift,
+            maps: self.maps.read(&self.gpu)?,
         })
     }
 
     fn restore(&mut self, snapshot: &Snapshot) {
-        self.clock = snapshot.clock;
+        (self.rules.clock, self.rules.level) = (snapshot.clock, snapshot.level);
         self.real = Buffer::from_slice(&self.gpu, &snapshot.real);
         self.whole = Buffer::from_slice(&self.gpu, &snapshot.whole);
-    }
-}
-
-/// The search over the whole database, in the form that suits the adapter.
-pub struct Search {
-    /// `[candidates][PADDED]`, with half squares: see [`search_wide::with_half_square`].
-    rows: Buffer<f32>,
-    candidates: u32,
-    count: u32,
-    block: u32,
-    longest: f32,
-    /// `[blocks][count]`
-    score: Buffer<f32>,
-    matched: Buffer<u32>,
-}
-
-/// Rows a block at least: one tile of `search_tile`.
-const BLOCK: u32 = 64;
-/// Blocks at most: `search_exact` passes over all of them twice, and lavapipe silently stops after
-/// 65,535 loop iterations.
-const BLOCKS: u32 = 16_384;
-/// Scores at most: WebGPU's default limit of 128 MiB a binding.
-const SCORES: u32 = 1 << 25;
-/// Blocks an invocation scores at most: enough work for each, enough invocations for all.
-const RUN: u32 = 32;
-/// Rows an invocation scores at most, for lavapipe's limit again.
-const ROWS: u32 = 32_768;
-
-impl Search {
-    /// For batches of `count` queries.
-    pub fn new(gpu: &Gpu, rows: &[[f32; PADDED]], count: usize) -> Self {
-        let candidates = rows.len() as u32;
-        let blocks = BLOCKS.min(SCORES / count as u32).max(1);
-        let block = BLOCK * candidates.div_ceil(BLOCK * blocks);
-        let halved: Vec<_> = rows.iter().map(search_wide::with_half_square).collect();
-        let square = halved
-            .iter()
-            .map(|row| -2.0 * row[PADDED - 1])
-            .fold(0.0, f32::max);
-        Search {
-            rows: Buffer::from_slice(gpu, halved.as_flattened()),
-            candidates,
-            count: count as u32,
-            block,
-            longest: square.sqrt(),
-            score: Buffer::zeroed(gpu, candidates.div_ceil(block) as usize * count),
-            matched: Buffer::zeroed(gpu, count),
+        self.maps = Buffer::from_slice(&self.gpu, &snapshot.maps);
+        if self.rules.task.obstacles() > 0 {
+            self.boxes = Buffer::from_slice(&self.gpu, &snapshot.boxes);
+            self.drift = Buffer::from_slice(&self.gpu, &snapshot.drift);
         }
-    }
-
-    /// Nearest row of every query `[count][PADDED]`, whose last number must be 1.
-    pub fn nearest(&self, gpu: &Gpu, queries: &Buffer<f32>) -> &Buffer<u32> {
-        let Search {
-            candidates,
-            count,
-            block,
-            longest,
-            ..
-        } = *self;
-        let run = (ROWS / block).clamp(1, RUN);
-        if gpu.software {
-            let params = search_wide::Params {
-                count,
-                candidates,
-                block,
-                run,
-            };
-            search_wide::launch(gpu, &self.rows, queries, &self.score, &params);
-        } else {
-            let params = search_tile::Params {
-                count,
-                candidates,
-                block,
-                run,
-            };
-            search_tile::launch(gpu, &self.rows, queries, &self.score, &params);
-        }
-        let params = search_exact::Params {
-            count,
-            candidates,
-            block,
-            longest,
-        };
-        search_exact::launch(
-            gpu,
-            &self.rows,
-            queries,
-            &self.score,
-            &self.matched,
-            &params,
-        );
-        &self.matched
     }
 }

@@ -1,28 +1,76 @@
 //! Thousands of simulated worlds side by side, as structure of arrays.
 //!
-//! [`task`] says what is asked of the character; [`gpu`] and [`cpu`] step a batch of worlds by
-//! the shaders or by their twins, behind the one trait [`World`].
+//! [`task`] says what is asked of the character, [`curriculum`] how its difficulty rises, [`rules`]
+//! turns it into the kernels' parameters;
+//! [`gpu`] and [`cpu`] step a batch of worlds by the shaders or by their twins, behind the one trait
+//! [`World`].
 
 pub mod cpu;
+pub mod curriculum;
 pub mod gpu;
+pub mod rules;
+pub mod search;
 pub mod task;
 
 use crate::gpu::Device;
+use crate::kernels::tally;
 use crate::motion::database::Database;
 use burn::tensor::Tensor;
+use rules::Rules;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-pub use task::Plane;
+pub use task::{LEVELS, Obstacles, Plane, Task};
 
 /// What ended since the last tally.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
-    pub episodes: f32,
-    pub successes: f32,
+    pub episodes: f64,
+    pub successes: f64,
+    pub collisions: f64,
+    pub truncations: f64,
     /// Summed steps of the ended episodes.
-    pub steps: f32,
+    pub steps: f64,
     /// Summed rewards of the ended episodes.
-    pub returns: f32,
+    pub returns: f64,
+}
+
+impl From<[f32; tally::SUMS]> for Tally {
+    fn from(sums: [f32; tally::SUMS]) -> Self {
+        let [episodes, successes, collisions, truncations, steps, returns] = sums.map(f64::from);
+        Tally {
+            episodes,
+            successes,
+            collisions,
+            truncations,
+            steps,
+            returns,
+        }
+    }
+}
+
+/// A batch to be opened.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup {
+    pub task: Task,
+    pub envs: usize,
+    /// Steps of a rollout.
+    pub horizon: usize,
+    pub seed: u32,
+    pub level: u32,
+}
+
+impl Setup {
+    fn rules(&self, database: &Database) -> Rules {
+        Rules {
+            task: self.task,
+            envs: self.envs,
+            horizon: self.horizon,
+            candidates: database.candidates.len(),
+            seed: self.seed,
+            clock: 0,
+            level: self.level,
+        }
+    }
 }
 
 /// Everything a batch of worlds needs to go on as if never stopped.
@@ -30,12 +78,22 @@ pub struct Tally {
 pub struct Snapshot {
     /// Steps so far: the counter of the random numbers.
     pub clock: u32,
+    pub level: u32,
     /// `[real::FIELDS][envs]`
     #[serde(skip)]
     pub real: Vec<f32>,
     /// `[whole::FIELDS][envs]`
     #[serde(skip)]
     pub whole: Vec<u32>,
+    /// `[envs][boxes::FIELDS][count]`
+    #[serde(skip)]
+    pub boxes: Vec<f32>,
+    /// `[envs][AXES][count]`
+    #[serde(skip)]
+    pub drift: Vec<f32>,
+    /// `[envs][MAPS][CELLS]`
+    #[serde(skip)]
+    pub maps: Vec<u32>,
 }
 
 /// What the learner needs to judge a rollout, `[horizon * envs]` each and `[envs]` for the ends.
@@ -44,7 +102,7 @@ pub struct Values {
     pub observed: Tensor<1>,
     /// Of the states after the last step.
     pub next: Tensor<1>,
-    /// Of the last real state of the episode truncated in this rollout, if there was one.
+    /// Of what [`World::last`] returned.
     pub last: Tensor<1>,
     /// Mean and deviation that undo the normalisation.
     pub scale: Tensor<1>,
@@ -52,9 +110,7 @@ pub struct Values {
 
 /// A batch of worlds. Tensors stay on the device the worlds live on.
 pub trait World {
-    fn envs(&self) -> usize;
-
-    /// Observations `[envs, OBSERVATION]`.
+    /// Observations `[envs, width]`.
     fn observe(&mut self) -> Tensor<2>;
 
     /// Draws actions `[envs, TRAJECTORY]` from Gaussians and returns them with the logarithm of
@@ -64,15 +120,19 @@ pub trait World {
     /// Plays one step, rewards it, and starts a new episode where one ended.
     fn step(&mut self, action: Tensor<2>);
 
-    /// The last real observations `[envs, OBSERVATION]` of truncated episodes. Rows of other
-    /// environments are of no meaning.
-    fn truncated(&mut self) -> Tensor<2>;
+    /// The last real observations of the episodes that ended in this rollout and whose value goes
+    /// on, `[envs, width]` or, if an environment may have several, `[horizon * envs, width]`. Rows of
+    /// others are of no meaning.
+    fn last(&mut self) -> Tensor<2>;
 
     /// Ends a rollout: advantages and the critic's targets, `[horizon * envs]`, in units of reward.
     fn judge(&mut self, values: Values, gamma: f32, lambda: f32) -> (Tensor<1>, Tensor<1>);
 
-    /// Sums up the episodes that ended since the last call: episodes, successes, steps, return.
+    /// Sums up the episodes that ended since the last call: the numbers of a [`Tally`] in order.
     fn tally(&mut self) -> Tensor<1>;
+
+    /// Episodes that begin from now on are of this level.
+    fn set_level(&mut self, level: u32);
 
     /// Copies the state to the host. Only between rollouts.
     fn snapshot(&self) -> anyhow::Result<Snapshot>;
@@ -81,23 +141,15 @@ pub trait World {
     fn restore(&mut self, snapshot: &Snapshot);
 }
 
-/// A batch of `envs` worlds on `device`, all at the start of an episode.
-pub fn open(
-    device: &Device,
-    database: &Arc<Database>,
-    task: Plane,
-    envs: usize,
-    horizon: usize,
-    seed: u32,
-) -> Box<dyn World> {
+/// A batch of worlds on `device`, all at the start of an episode. On the plane these first episodes
+/// have limits of all lengths, so that not all are truncated at once.
+pub fn open(device: &Device, database: &Arc<Database>, setup: &Setup) -> Box<dyn World> {
+    let spread = match setup.task {
+        Task::Plane(plane) => plane.max_steps,
+        Task::Obstacles(_) => 0,
+    };
     match device {
-        Device::Cpu => Box::new(cpu::CpuWorld::new(
-            database.clone(),
-            task,
-            envs,
-            horizon,
-            seed,
-        )),
-        Device::Gpu(gpu) => Box::new(gpu::GpuWorld::new(gpu, database, task, envs, horizon, seed)),
+        Device::Cpu => Box::new(cpu::CpuWorld::new(database.clone(), setup, spread)),
+        Device::Gpu(gpu) => Box::new(gpu::GpuWorld::new(gpu, database, setup, spread)),
     }
 }

@@ -139,23 +139,27 @@ fn checkpoints_that_are_none_are_refused() {
         (newer(&good), "use a newer footwork"),
         (with_nan(&good), "not finite"),
         (
-            change(&good, "/header/task", json!("stairs")),
-            "of the task `stairs`",
+            change(&good, "/header/task", json!({"stairs": {}})),
+            "unknown variant `stairs`",
         ),
         (
             change(&good, "/header/observation", json!(40)),
-            "with 40 observations",
+            "its network does not fit its task",
         ),
         (
             change(&good, "/header/database", json!(7)),
             "fingerprint 00000007",
         ),
         (
-            change(&good, "/header/hidden", json!([16, 16])),
+            change(&good, "/header/network/hidden", json!([16, 16])),
             "do not fit together",
         ),
         (
-            change(&good, "/header/hidden", json!([1u64 << 40, 1u64 << 40])),
+            change(
+                &good,
+                "/header/network/hidden",
+                json!([1u64 << 40, 1u64 << 40]),
+            ),
             "do not fit together",
         ),
     ] {
@@ -183,7 +187,7 @@ fn a_run_whose_data_or_configuration_changed_is_not_resumed() {
     let config = place.read("run/config.toml");
     for (was, is, key) in [
         ("envs = 64", "envs = 32", "`ppo.envs`"),
-        ("hidden = [32, 32]", "hidden = [16, 16]", "`ppo.hidden`"),
+        ("hidden = [32, 32]", "hidden = [16, 16]", "`ppo.network`"),
         ("half_side = 5.0", "half_side = 4.0", "`plane`"),
         ("seed = 1", "seed = 2", "`seed`"),
     ] {
@@ -210,14 +214,8 @@ fn a_run_whose_data_or_configuration_changed_is_not_resumed() {
 #[test]
 fn other_files_of_a_run_that_are_damaged_are_named() {
     let place = Place::with_run();
-    for (name, part) in [
-        ("events.out.tfevents.footwork", "not an event file"),
-        ("metrics.jsonl", "metrics.jsonl; move it away"),
-    ] {
-        let path = place.path("run").join(name);
-        let good = std::fs::read(&path).unwrap();
-        std::fs::write(&path, b"\xff\xfe nonsense").unwrap();
-        place.refused("train plane --resume run --steps 10240", 1, &[part]);
-        std::fs::write(&path, good).unwrap();
-    }
+    let path = place.path("run/metrics.jsonl");
+    std::fs::write(&path, b"\xff\xfe nonsense").unwrap();
+    let resume = "train plane --resume run --steps 10240";
+    place.refused(resume, 1, &["metrics.jsonl; move it away"]);
 }

@@ -3,6 +3,7 @@
 #[cfg(unix)]
 mod damaged;
 mod data;
+mod obstacles;
 #[cfg(unix)]
 mod places;
 mod refused;

@@ -121,10 +121,7 @@ fn mistaken_configurations_name_key_line_and_nearest() {
             "plane.max_steps = 4294967295",
             &["plane.max_steps is 4294967295"],
         ),
-        (
-            "ppo.horizon = 1000",
-            &["ppo.horizon is 1000", "plane.max_steps"],
-        ),
+        ("ppo.horizon = 1000", &["ppo.horizon is 1000", "max_steps"]),
         ("ppo.epochs = 0", &["ppo.epochs is 0"]),
         ("ppo.learning_rate = nan", &["ppo.learning_rate is NaN"]),
         ("ppo.learning_rate = -1", &["ppo.learning_rate is -1"]),
@@ -132,18 +129,21 @@ fn mistaken_configurations_name_key_line_and_nearest() {
         ("ppo.gamma = 1.5", &["ppo.gamma is 1.5", "between 0 and 1"]),
         ("ppo.log_std = nan", &["ppo.log_std is NaN"]),
         ("ppo.max_gradient = -1", &["ppo.max_gradient is -1"]),
-        ("ppo.hidden = [0]", &["a width of ppo.hidden is 0"]),
         (
-            "ppo.hidden = [1000000000000]",
-            &["a width of ppo.hidden is"],
+            "ppo.network.hidden = [0]",
+            &["a width of ppo.network.hidden is 0"],
         ),
         (
-            "ppo.hidden = [1, 1, 1, 1, 1, 1, 1, 1, 1]",
-            &["the length of ppo.hidden is 9"],
+            "ppo.network.hidden = [1000000000000]",
+            &["a width of ppo.network.hidden is"],
         ),
         (
-            "ppo.hidden = 3",
-            &["`ppo.hidden` must be of the type array"],
+            "ppo.network.hidden = [1, 1, 1, 1, 1, 1, 1, 1, 1]",
+            &["the length of ppo.network.hidden is 9"],
+        ),
+        (
+            "ppo.network.hidden = 3",
+            &["`ppo.network.hidden` must be of the type array"],
         ),
     ] {
         place.write("run.toml", text);

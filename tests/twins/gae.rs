@@ -42,6 +42,8 @@ impl Case {
                 steps: steps as u32,
                 gamma: 0.99,
                 lambda: 0.95,
+                bootstrap: 1 << end::TRUNCATED,
+                final_steps: 1,
             },
         }
     }
@@ -113,6 +115,14 @@ impl Case {
         f64::from(normalised) * f64::from(self.scale[1]) + f64::from(self.scale[0])
     }
 
+    /// The value of the last real state of an episode that ended at `step`.
+    fn last(&self, step: usize, env: usize) -> f32 {
+        match self.params.final_steps {
+            1 => self.final_value[env],
+            _ => self.final_value[step * self.params.envs as usize + env],
+        }
+    }
+
     /// The n-step returns from `step` on, n = 1, 2, .. to the end of episode or rollout.
     fn returns(&self, step: usize, env: usize) -> Vec<f64> {
         let (envs, steps) = (self.params.envs as usize, self.params.steps as usize);
@@ -122,8 +132,8 @@ impl Case {
             sum += gamma.powi(n as i32) * f64::from(self.reward[later * envs + env]);
             let ended = self.ended[later * envs + env];
             let after = match ended {
-                end::REACHED => 0.0,
-                end::TRUNCATED => self.real(self.final_value[env]),
+                _ if ended != end::RUNNING && self.params.bootstrap & 1 << ended == 0 => 0.0,
+                _ if ended != end::RUNNING => self.real(self.last(later, env)),
                 _ if later + 1 < steps => self.real(self.value[(later + 1) * envs + env]),
                 _ => self.real(self.next_value[env]),
             };
@@ -168,7 +178,7 @@ impl Case {
                 .map(|v| v.abs())
                 .sum::<f32>()
         };
-        let values = own(&self.value) + self.next_value[env].abs() + self.final_value[env].abs();
+        let values = own(&self.value) + self.next_value[env].abs() + own(&self.final_value);
         let offsets = (self.params.steps + 2) as f32 * self.scale[0].abs();
         own(&self.reward) + values * self.scale[1] + offsets
     }
@@ -202,6 +212,7 @@ fn mixed(step: usize, env: usize) -> u32 {
     match (step * 31 + env * 17) % 11 {
         _ if step == env % 13 => end::TRUNCATED,
         0 => end::REACHED,
+        1 => end::COLLIDED,
         _ => end::RUNNING,
     }
 }
@@ -254,4 +265,41 @@ fn agrees_where_all_or_none_ends() {
         }
     })
     .agrees();
+}
+
+/// Ends of all kinds, any number of each.
+fn crowded(step: usize, env: usize) -> u32 {
+    match (step * 31 + env * 17) % 7 {
+        ended @ 1..=3 => ended as u32,
+        _ => end::RUNNING,
+    }
+}
+
+#[test]
+fn agrees_for_every_set_of_ends_after_which_value_goes_on() {
+    for bootstrap in (0..16).chain([end::ANY]) {
+        for steps in [1, 2, 16] {
+            // One row of last values for all steps, or a row a step.
+            for final_steps in [1, steps] {
+                let mut case = Case::new(65, steps, 7 + bootstrap, crowded);
+                case.final_value = Draw::new(8).normals(65 * final_steps);
+                (case.params.bootstrap, case.params.final_steps) = (bootstrap, final_steps as u32);
+                case.agrees();
+            }
+        }
+    }
+}
+
+/// One arrival valued as if the walk went on, by hand: reward 10, then half of the value 4.
+#[test]
+fn an_arrival_that_goes_on_is_worth_its_value() {
+    for (bootstrap, worth) in [(1 << end::TRUNCATED, 10.0), (1 << end::REACHED, 12.0)] {
+        let mut case = Case::new(1, 1, 9, |_, _| end::REACHED);
+        (case.reward[0], case.value[0], case.final_value[0]) = (10.0, 3.0, 4.0);
+        case.scale = [0.0, 1.0];
+        (case.params.gamma, case.params.bootstrap) = (0.5, bootstrap);
+        case.agrees();
+        let (advantage, target) = case.twin();
+        assert_eq!((advantage[0], target[0]), (worth - 3.0, worth));
+    }
 }

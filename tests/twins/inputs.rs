@@ -90,7 +90,7 @@ impl Draw {
                     _ => self.within(20.0),
                 };
             }
-            let below = [frames, 250, 3, 2, 900];
+            let below = [frames, 250, 250, 4, 2, 9, 3, 3, 3, 900];
             for (field, below) in below.into_iter().enumerate() {
                 wholes[field * envs + env] = self.below(below) as u32;
             }

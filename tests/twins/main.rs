@@ -1,22 +1,33 @@
-//! Shaders against their CPU twins, twins against the paper's formulas, searches against an f64
+//! Shaders against their CPU twins, twins against the paper's formulas
+//! and slow geometry, searches against an f64
 //! oracle, and whole worlds against each other. Every shader runs twice: by its own `launch` on
 //! burn's stream, unchecked as in use, and through plain wgpu with all run-time checks on.
 //! The tests need a software Vulkan adapter (lavapipe) and fail without one.
 
 mod act;
 mod checked;
+mod collide;
 mod gae;
+mod geometry;
+mod ground;
+mod hits;
 mod inputs;
+mod keep;
 mod observe;
+mod obstacles;
 mod oracle;
 mod paper;
 mod query;
 mod reset;
+mod reward;
 mod rng;
+mod scatter;
 mod search;
 mod search_exact;
 mod search_tile;
 mod search_wide;
+mod sense;
 mod step;
 mod tally;
+mod wander;
 mod world;

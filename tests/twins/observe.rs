@@ -6,7 +6,7 @@ use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, gpu, same, within_terms};
 use bytemuck::cast_slice;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::layout::{GOAL_SCALE, OBSERVATION, end, real};
+use footwork::kernels::layout::{CELLS, GOAL, GOAL_SCALE, MAPS, SENSED, end, real};
 use footwork::kernels::observe;
 use footwork::motion::database::PADDED;
 use footwork::motion::features::POSE;
@@ -18,6 +18,7 @@ struct Case {
     real: Vec<f32>,
     whole: Vec<u32>,
     ended: Vec<u32>,
+    maps: Vec<u32>,
     params: observe::Params,
 }
 
@@ -30,13 +31,38 @@ impl Case {
             features: draw.rows(FRAMES, 0.0),
             real,
             whole,
-            ended: (0..offset + envs).map(|_| draw.below(3) as u32).collect(),
+            ended: (0..offset + envs).map(|_| draw.below(4) as u32).collect(),
+            maps: vec![0],
             params: observe::Params {
                 envs: envs as u32,
                 offset: offset as u32,
                 only,
+                rows: 1,
+                width: GOAL as u32,
+                to: 0,
             },
         }
+    }
+
+    /// The same with maps, written from row `to` on.
+    fn mapped(mut self, to: usize) -> Self {
+        let mut draw = Draw::new(5);
+        let rows = self.envs() * MAPS * CELLS;
+        self.maps = (0..rows).map(|_| draw.bits()[0] & 0xffff).collect();
+        self.params.rows = CELLS as u32;
+        self.params.width = (GOAL + SENSED) as u32;
+        self.params.to = to as u32;
+        self
+    }
+
+    fn width(&self) -> usize {
+        self.params.width as usize
+    }
+
+    /// The environment whose observation a row is.
+    fn env(&self, row: usize) -> Option<usize> {
+        let env = row.checked_sub(self.params.to as usize);
+        env.filter(|&env| env < self.envs())
     }
 
     fn envs(&self) -> usize {
@@ -45,7 +71,7 @@ impl Case {
 
     /// One row too many: it must stay untouched.
     fn poison(&self) -> Vec<f32> {
-        vec![POISON; (self.envs() + 1) * OBSERVATION]
+        vec![POISON; (self.params.to as usize + self.envs() + 1) * self.width()]
     }
 
     fn twin(&self) -> Vec<f32> {
@@ -55,6 +81,7 @@ impl Case {
             &self.real,
             &self.whole,
             &self.ended,
+            &self.maps,
             &mut observation,
             &self.params,
         );
@@ -70,6 +97,7 @@ impl Case {
             &Buffer::from_slice(&gpu, &self.real),
             &Buffer::from_slice(&gpu, &self.whole),
             &Buffer::from_slice(&gpu, &self.ended),
+            &Buffer::from_slice(&gpu, &self.maps),
             &observation,
             &self.params,
         );
@@ -78,15 +106,16 @@ impl Case {
 
     fn checked(&self) -> Vec<f32> {
         let poison = self.poison();
-        let buffers: [&[u8]; 5] = [
+        let buffers: [&[u8]; 6] = [
             cast_slice(&self.features),
             cast_slice(&self.real),
             cast_slice(&self.whole),
             cast_slice(&self.ended),
+            cast_slice(&self.maps),
             cast_slice(&poison),
         ];
-        let groups = groups(&shader::OBSERVE, self.envs());
-        checked::run(&shader::OBSERVE, groups, &buffers, &self.params).of(4)
+        let groups = groups(&shader::OBSERVE, self.envs() * self.params.rows as usize);
+        checked::run(&shader::OBSERVE, groups, &buffers, &self.params).of(5)
     }
 
     /// The larger of a goal's products.
@@ -100,13 +129,14 @@ impl Case {
     fn agrees(&self) -> Vec<f32> {
         let twin = self.twin();
         for (form, got) in [("launched", self.launch()), ("checked", self.checked())] {
-            let rows = got.chunks(OBSERVATION).zip(twin.chunks(OBSERVATION));
-            for (env, (got, want)) in rows.enumerate() {
+            let rows = got.chunks(self.width()).zip(twin.chunks(self.width()));
+            for (row, (got, want)) in rows.enumerate() {
                 same(form, &got[..POSE], &want[..POSE]);
-                close(form, &got[POSE..], &want[POSE..], |_| match env {
-                    env if env < self.envs() => within_terms(&[self.largest(env)]),
-                    _ => 0.0,
+                close(form, &got[POSE..GOAL], &want[POSE..GOAL], |_| {
+                    self.env(row)
+                        .map_or(0.0, |env| within_terms(&[self.largest(env)]))
                 });
+                same(form, &got[GOAL..], &want[GOAL..]);
             }
         }
         twin
@@ -117,9 +147,9 @@ impl Case {
 fn agrees_with_its_twin_on_random_states() {
     for seed in SEEDS {
         for envs in SIZES {
-            let seen = Case::random(envs, seed, end::RUNNING).agrees();
-            assert!(seen[..envs * OBSERVATION].iter().all(|&o| o != POISON));
-            assert!(seen[envs * OBSERVATION..].iter().all(|&o| o == POISON));
+            let seen = Case::random(envs, seed, end::ANY).agrees();
+            assert!(seen[..envs * GOAL].iter().all(|&o| o != POISON));
+            assert!(seen[envs * GOAL..].iter().all(|&o| o == POISON));
         }
     }
 }
@@ -127,33 +157,64 @@ fn agrees_with_its_twin_on_random_states() {
 #[test]
 fn writes_only_the_rows_that_ended_as_asked() {
     for only in [end::REACHED, end::TRUNCATED] {
-        let case = Case::random(130, 1, only);
+        let case = Case::random(130, 1, 1 << only);
         let seen = case.agrees();
         for (row, &ended) in seen
-            .chunks(OBSERVATION)
+            .chunks(GOAL)
             .zip(&case.ended[case.params.offset as usize..])
         {
             assert_eq!(row[0] != POISON, ended == only);
         }
     }
-    let mut case = Case::random(65, 1, end::TRUNCATED);
+    let mut case = Case::random(65, 1, 1 << end::TRUNCATED);
     case.ended.fill(end::REACHED);
     assert!(case.agrees().iter().all(|&o| o == POISON));
     case.ended.fill(end::TRUNCATED);
-    assert!(
-        case.agrees()[..65 * OBSERVATION]
-            .iter()
-            .all(|&o| o != POISON)
-    );
+    assert!(case.agrees()[..65 * GOAL].iter().all(|&o| o != POISON));
 }
 
 #[test]
 fn survives_degenerate_headings_and_targets() {
-    let mut case = Case::random(65, 2, end::RUNNING);
+    let mut case = Case::random(65, 2, end::ANY);
     let odd = [0.0, -0.0, 1e-30, 1e30, f32::INFINITY, f32::NAN];
     for (env, value) in odd.into_iter().enumerate() {
         case.real[real::HEADING_X * 65 + env] = value;
         case.real[real::TARGET_Z * 65 + 64 - env] = value;
     }
     case.agrees();
+}
+
+#[test]
+fn maps_stand_after_the_goal_with_channels_last() {
+    for envs in [1, 3, 4, 5, 64, 65] {
+        for to in [0, envs, 7] {
+            let case = Case::random(envs, 3, end::ANY).mapped(to);
+            let seen = case.agrees();
+            for (row, seen) in seen.chunks(case.width()).enumerate() {
+                let Some(env) = case.env(row) else {
+                    assert!(seen.iter().all(|&o| o == POISON), "row {row}");
+                    continue;
+                };
+                let maps = &case.maps[env * MAPS * CELLS..][..MAPS * CELLS];
+                for (at, &seen) in seen[GOAL..].iter().enumerate() {
+                    let (cell, map) = (at / MAPS, at % MAPS);
+                    let bits = maps[map * CELLS + cell / CELLS];
+                    assert_eq!(seen, (bits >> (cell % CELLS) & 1) as f32);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn only_whole_rows_that_ended_as_asked_are_written() {
+    for ends in 0..16 {
+        let case = Case::random(65, 4, ends).mapped(65);
+        let seen = case.agrees();
+        for (row, seen) in seen.chunks(case.width()).enumerate() {
+            let ended = |env: usize| case.ended[case.params.offset as usize + env];
+            let written = case.env(row).is_some_and(|env| ends & 1 << ended(env) != 0);
+            assert!(seen.iter().all(|&o| (o != POISON) == written), "row {row}");
+        }
+    }
 }

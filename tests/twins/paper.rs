@@ -2,7 +2,7 @@
 //! have f32 and unit vectors. Bar: 1e-5 m, 1e-5 rad, rewards within 1e-5 of themselves.
 
 use crate::inputs::Draw;
-use footwork::kernels::layout::{OBSERVATION, end, real, whole};
+use footwork::kernels::layout::{GOAL, end, real, whole};
 use footwork::kernels::{observe, step};
 use footwork::motion::database::{Database, TAIL};
 use footwork::motion::features::{PLAYED, POSE};
@@ -66,7 +66,10 @@ struct Worlds {
 
 impl Worlds {
     fn random(seed: u32) -> Self {
-        let (real, whole) = Draw::new(seed).state(ENVS, DATABASE.frames());
+        let (real, mut whole) = Draw::new(seed).state(ENVS, DATABASE.frames());
+        let mut fill = |field: usize, value| whole[field * ENVS..][..ENVS].fill(value);
+        fill(whole::LIMIT, Plane::default().max_steps);
+        fill(whole::STRUCK, 0);
         Worlds {
             real,
             whole,
@@ -76,12 +79,7 @@ impl Worlds {
     }
 
     fn step(&mut self, matched: &[u32]) {
-        let Plane {
-            reach,
-            bonus,
-            max_steps,
-            ..
-        } = Plane::default();
+        let Plane { reach, bonus, .. } = Plane::default();
         step::twin(
             &DATABASE.candidates,
             matched,
@@ -93,9 +91,13 @@ impl Worlds {
             &step::Params {
                 envs: ENVS as u32,
                 offset: 0,
-                max_steps,
                 reach,
+                near: 1.0,
+                progress: 0.0,
+                clear: 0.0,
+                shift: 0.0,
                 bonus,
+                crash: 0.0,
             },
         );
     }
@@ -173,7 +175,8 @@ fn rewards_and_ends_are_those_of_equation_3() {
 fn an_episode_is_truncated_after_200_steps() {
     let mut worlds = Worlds::random(5);
     worlds.real[real::TARGET_X * ENVS..(real::TARGET_Z + 1) * ENVS].fill(1e5);
-    worlds.whole[whole::AGE * ENVS..].fill(0);
+    worlds.whole[whole::AGE * ENVS..][..ENVS].fill(0);
+    worlds.whole[whole::EPISODES * ENVS..].fill(0);
     for step in 1..=200 {
         worlds.step(&[5; ENVS]);
         let expected = if step < 200 {
@@ -189,11 +192,10 @@ fn an_episode_is_truncated_after_200_steps() {
     let count = |field: usize| &worlds.whole[field * ENVS..(field + 1) * ENVS];
     assert!(count(whole::LENGTHS).iter().all(|&steps| steps == 200));
     assert!(count(whole::EPISODES).iter().all(|&episodes| episodes == 1));
-    assert!(
-        count(whole::SUCCESSES)
-            .iter()
-            .all(|&successes| successes == 0)
-    );
+    assert!(count(whole::TRUNCATIONS).iter().all(|&ends| ends == 1));
+    for field in [whole::SUCCESSES, whole::COLLISIONS] {
+        assert!(count(field).iter().all(|&ends| ends == 0));
+    }
 }
 
 #[test]
@@ -209,21 +211,25 @@ fn candidates_are_all_frames_whose_next_second_is_known() {
 #[test]
 fn an_observation_is_the_pose_and_a_fifth_of_the_way_to_the_target() {
     let worlds = Worlds::random(6);
-    let mut observation = vec![0.0; ENVS * OBSERVATION];
+    let mut observation = vec![0.0; ENVS * GOAL];
     let params = observe::Params {
         envs: ENVS as u32,
         offset: 0,
-        only: end::RUNNING,
+        only: end::ANY,
+        rows: 1,
+        width: GOAL as u32,
+        to: 0,
     };
     observe::twin(
         &DATABASE.features,
         &worlds.real,
         &worlds.whole,
         &worlds.ended,
+        &[],
         &mut observation,
         &params,
     );
-    for (env, row) in observation.chunks(OBSERVATION).enumerate() {
+    for (env, row) in observation.chunks(GOAL).enumerate() {
         assert_eq!(
             row[..POSE],
             DATABASE.features[worlds.whole[env] as usize][..POSE]

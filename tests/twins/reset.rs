@@ -2,16 +2,22 @@
 //! Bar: everything equal bit for bit but the heading, a quotient of a square root: 4 roundings.
 
 use crate::checked;
+use crate::geometry::depth;
+use crate::ground::{COUNTS, Ground};
 use crate::inputs::{Draw, POISON, POISON_WHOLE, SEEDS, SIZES, close, gpu, same, within_terms};
 use bytemuck::cast_slice;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::layout::{end, real, whole};
+use footwork::kernels::layout::{boxes, end, real, whole};
 use footwork::kernels::reset;
+
+/// Numbers past the last box.
+const TAIL: usize = 5;
 
 struct Case {
     candidates: Vec<u32>,
     ended: Vec<u32>,
+    boxes: Vec<f32>,
     params: reset::Params,
 }
 
@@ -37,13 +43,24 @@ impl Case {
                 clock: draw.bits()[0],
                 offset: offset as u32,
                 everywhere: 0,
+                count: 0,
+                max_steps: 200,
                 spread: 0,
                 half_side: 5.0,
                 reach: 0.5,
+                clear: 0,
             },
             candidates,
             ended: ends,
+            boxes: vec![0.0; TAIL],
         }
+    }
+
+    /// The same among obstacles that targets keep out of.
+    fn among(mut self, ground: &Ground) -> Self {
+        self.boxes = ground.boxes.clone();
+        (self.params.count, self.params.clear) = (ground.count as u32, 1);
+        self
     }
 
     fn envs(&self) -> usize {
@@ -62,6 +79,7 @@ impl Case {
         reset::twin(
             &self.candidates,
             &self.ended,
+            &self.boxes,
             &mut real,
             &mut whole,
             &self.params,
@@ -78,6 +96,7 @@ impl Case {
             &gpu,
             &Buffer::from_slice(&gpu, &self.candidates),
             &Buffer::from_slice(&gpu, &self.ended),
+            &Buffer::from_slice(&gpu, &self.boxes),
             &real,
             &whole,
             &self.params,
@@ -90,15 +109,16 @@ impl Case {
 
     fn checked(&self) -> State {
         let (real, whole) = self.poison();
-        let buffers: [&[u8]; 4] = [
+        let buffers: [&[u8]; 5] = [
             cast_slice(&self.candidates),
             cast_slice(&self.ended),
+            cast_slice(&self.boxes),
             cast_slice(&real),
             cast_slice(&whole),
         ];
         let groups = groups(&shader::RESET, self.envs());
         let outcome = checked::run(&shader::RESET, groups, &buffers, &self.params);
-        (outcome.of(2), outcome.of(3))
+        (outcome.of(3), outcome.of(4))
     }
 
     fn agrees(&self) -> State {
@@ -124,16 +144,23 @@ fn agrees_with_its_twin_on_random_ends() {
     for seed in SEEDS {
         for envs in SIZES {
             let mut draw = Draw::new(seed);
-            let ends: Vec<u32> = (0..envs).map(|_| draw.below(3) as u32).collect();
+            let ends: Vec<u32> = (0..envs).map(|_| draw.below(4) as u32).collect();
             let (real, whole) = Case::new(envs, seed, |env| ends[env]).agrees();
             for env in 0..envs {
                 let untouched = ends[env] == end::RUNNING;
                 assert_eq!(real[env] == POISON, untouched);
                 assert_eq!(whole[env] == POISON_WHOLE, untouched);
+                let at = |field: usize| whole[field * envs + env];
+                let begun = if untouched {
+                    [POISON_WHOLE; 2]
+                } else {
+                    [0, 200]
+                };
+                assert_eq!([at(whole::AGE), at(whole::LIMIT)], begun);
             }
             assert!(real[real::RETURNS * envs..].iter().all(|&r| r == POISON));
             assert!(
-                whole[whole::EPISODES * envs..]
+                whole[whole::HITS * envs..]
                     .iter()
                     .all(|&w| w == POISON_WHOLE)
             );
@@ -151,7 +178,7 @@ fn agrees_at_the_edges_of_its_parameters() {
             (0.2, 0.5),
             (1e4, 0.0),
         ] {
-            for spread in [0, 1, 2, 200, u32::MAX] {
+            for spread in [0, 1, 2, 199, 200] {
                 let mut case = Case::new(130, seed, |_| end::RUNNING);
                 case.params.everywhere = 1;
                 (case.params.seed, case.params.clock) = (seed, clock);
@@ -213,10 +240,10 @@ fn starts_and_targets_are_uniform() {
         assert!(mean(&mut field(axis)).abs() < 0.02);
         assert!((mean(&mut field(axis).map(|v| v * v)) - 0.5).abs() < 0.01);
     }
-    for (field, kinds) in [(whole::FRAME, 100), (whole::AGE, 200)] {
+    for (field, kinds) in [(whole::FRAME, 100), (whole::LIMIT, 200)] {
         let mut counts = vec![0.0f64; kinds];
         for &value in &whole[field * ENVS..(field + 1) * ENVS] {
-            counts[value as usize] += 1.0;
+            counts[value as usize % kinds] += 1.0;
         }
         let expected = ENVS as f64 / kinds as f64;
         let chi: f64 = counts
@@ -227,5 +254,62 @@ fn starts_and_targets_are_uniform() {
             chi < kinds as f64 + 5.0 * (2.0 * kinds as f64).sqrt(),
             "chi {chi}"
         );
+    }
+}
+
+#[test]
+fn targets_lie_in_no_obstacle_if_asked() {
+    for count in COUNTS {
+        for envs in SIZES {
+            let ground = Ground::new(envs, count, 5, false);
+            let mut case = Case::new(envs, 5, |_| end::REACHED).among(&ground);
+            let (real, _) = case.agrees();
+            case.params.clear = 0;
+            let (anywhere, _) = case.agrees();
+            let mut inside = 0;
+            for env in 0..envs {
+                let target = |of: &[f32]| {
+                    [real::TARGET_X, real::TARGET_Z].map(|field| f64::from(of[field * envs + env]))
+                };
+                let obstacles = ground.obstacles(env);
+                assert!(depth(&obstacles, target(&real)) < 0.0, "environment {env}");
+                assert!(target(&real)[0].hypot(target(&real)[1]) > 0.5);
+                let drawn_inside = depth(&obstacles, target(&anywhere)) >= 0.0;
+                inside += usize::from(drawn_inside);
+                // Only those inside are drawn again.
+                assert_eq!(target(&real) != target(&anywhere), drawn_inside);
+            }
+            assert!(envs < 1000 || count < 100 || inside > envs / 8, "{inside}");
+        }
+    }
+}
+
+#[test]
+fn where_all_is_covered_the_corner_remains() {
+    let mut ground = Ground::new(65, 400, 6, false);
+    for env in 0..65 {
+        let half = (env * boxes::FIELDS + boxes::HALF_X) * 400;
+        ground.boxes[half..half + 800].fill(64.0);
+    }
+    let (real, _) = Case::new(65, 6, |_| end::COLLIDED).among(&ground).agrees();
+    let targets = real::TARGET_X * 65..(real::TARGET_Z + 1) * 65;
+    assert_eq!(real[targets], [5.0; 130]);
+}
+
+/// Lavapipe silently stops after 65,535 loop iterations: 32 draws look at 2,047 boxes at most.
+#[test]
+fn the_last_of_two_thousand_boxes_keeps_targets_out() {
+    const MOST: usize = 2_000;
+    let mut ground = Ground::crowded(65, MOST);
+    for env in 0..65 {
+        // All of the square but a rim, so that most targets are drawn again and again.
+        let half = (env * boxes::FIELDS + boxes::HALF_X) * MOST;
+        ground.boxes[half + MOST - 1] = 4.5;
+        ground.boxes[half + 2 * MOST - 1] = 4.5;
+    }
+    let (real, _) = Case::new(65, 7, |_| end::COLLIDED).among(&ground).agrees();
+    for env in 0..65 {
+        let away = [real::TARGET_X, real::TARGET_Z].map(|field| real[field * 65 + env].abs());
+        assert!(away[0].max(away[1]) > 4.5, "environment {env}");
     }
 }

@@ -11,7 +11,7 @@ use footwork::motion::features::{FEATURE, POSE};
 use footwork::motion::normalise::Weights;
 use footwork::search::Index;
 use footwork::train::data;
-use footwork::world::gpu::Search;
+use footwork::world::search::Search;
 use proptest::prelude::*;
 use std::sync::LazyLock;
 

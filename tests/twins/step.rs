@@ -50,9 +50,13 @@ impl Case {
             params: step::Params {
                 envs: envs as u32,
                 offset: offset as u32,
-                max_steps: 200,
                 reach: 0.5,
+                near: 1.0,
+                progress: 0.0,
+                clear: 0.0,
+                shift: 0.0,
                 bonus: 1000.0,
+                crash: 0.0,
             },
         }
     }
@@ -66,6 +70,11 @@ impl Case {
         for &(field, value) in values {
             self.state.real[field * envs + env] = value;
         }
+    }
+
+    fn fill(&mut self, field: usize, value: u32) {
+        let envs = self.envs();
+        self.state.whole[field * envs..][..envs].fill(value);
     }
 
     fn twin(&self) -> State {
@@ -135,6 +144,22 @@ impl Case {
         twin
     }
 
+    /// What a reward may differ by where the way to the target differs by `blur`.
+    fn reward_bar(&self, want: &State, env: usize, blur: f32) -> f32 {
+        let p = &self.params;
+        let distance = |reals: &[f32]| {
+            let at = |field: usize| reals[field * self.envs() + env];
+            (at(real::TARGET_X) - at(real::X)).hypot(at(real::TARGET_Z) - at(real::Z))
+        };
+        let (before, after) = (distance(&self.state.real), distance(&want.real));
+        let near = p.near * (-after).exp();
+        let terms = near + p.clear * (1.0 + p.shift) + p.bonus + p.crash.abs();
+        near * ((8.0 + 4.0 * after) * f32::EPSILON + blur)
+            + p.progress * (2.0 * blur + 4.0 * f32::EPSILON * (before + after))
+            + p.clear * 20.0 * f32::EPSILON
+            + 4.0 * f32::EPSILON * terms
+    }
+
     fn compare(&self, form: &str, got: &State, want: &State) {
         let envs = self.envs();
         assert_eq!(got.ended, want.ended, "{form}: ended");
@@ -163,13 +188,8 @@ impl Case {
         let offset = self.params.offset as usize;
         let gained = |i: usize| match i.checked_sub(offset) {
             Some(env) if env < envs => {
-                let at = |field: usize| want.real[field * envs + env];
-                let (x, z) = (
-                    at(real::TARGET_X) - at(real::X),
-                    at(real::TARGET_Z) - at(real::Z),
-                );
                 let blur = 4.0 * place(env).max(place(envs + env));
-                want.reward[i] * ((8.0 + 4.0 * x.hypot(z)) * f32::EPSILON + blur)
+                self.reward_bar(want, env, blur)
             }
             _ => 0.0,
         };
@@ -212,9 +232,53 @@ fn agrees_with_its_twin_on_random_states() {
     }
 }
 
+#[test]
+fn agrees_with_its_twin_under_all_rewards_and_penalties() {
+    for seed in SEEDS {
+        for envs in SIZES {
+            let mut case = Case::random(envs, seed);
+            case.params = step::Params {
+                reach: 10.0,
+                progress: 4.0,
+                clear: 1.0,
+                shift: 1.0,
+                bonus: 10.0,
+                crash: -5.0,
+                ..case.params
+            };
+            case.agrees();
+        }
+    }
+}
+
+#[test]
+fn a_collision_comes_before_an_arrival_and_that_before_the_last_step() {
+    let mut case = standing(80);
+    (case.params.bonus, case.params.crash) = (10.0, -5.0);
+    case.params.near = 0.0;
+    case.fill(whole::AGE, 9);
+    for env in 0..8 {
+        let target = if env & 1 == 1 { 0.25 } else { 3.0 };
+        case.set(env, &[(real::TARGET_X, target), (real::TARGET_Z, 0.0)]);
+        case.state.whole[whole::STRUCK * 80 + env] = (env >> 1 & 1) as u32;
+        case.state.whole[whole::LIMIT * 80 + env] = if env & 4 == 4 { 10 } else { 11 };
+    }
+    let after = case.agrees();
+    let (reached, struck) = ((end::REACHED, 10.0), (end::COLLIDED, -5.0));
+    let (running, truncated) = ((end::RUNNING, 0.0), (end::TRUNCATED, 0.0));
+    let expected = [
+        running, reached, struck, struck, truncated, reached, struck, struck,
+    ];
+    for (env, expected) in expected.into_iter().enumerate() {
+        let at = case.params.offset as usize + env;
+        assert_eq!((after.ended[at], after.reward[at]), expected, "{env}");
+    }
+}
+
 /// A character that stands still at the origin, so that distances are exact.
 fn standing(envs: usize) -> Case {
     let mut case = Case::random(envs, 5);
+    case.fill(whole::STRUCK, 0);
     case.motion.fill(RootMotion {
         moved: [0.0; 2],
         turned: [0.0, 1.0],
@@ -240,6 +304,7 @@ fn ends_exactly_at_reach_and_at_the_last_step() {
         [3.0, 4.0],
     ];
     let ages = [0, 198, 199, 200, u32::MAX - 1];
+    case.fill(whole::LIMIT, 200);
     for env in 0..25 {
         let [x, z]: [f32; 2] = places[env % 5];
         case.set(env, &[(real::TARGET_X, x), (real::TARGET_Z, z)]);
@@ -292,12 +357,13 @@ fn all_end_or_none_ends() {
         case.agrees().ended[case.params.offset as usize..][..130],
         [end::REACHED; 130]
     );
-    (case.params.reach, case.params.max_steps) = (4.9, 0);
+    case.params.reach = 4.9;
+    case.fill(whole::LIMIT, 0);
     assert_eq!(
         case.agrees().ended[case.params.offset as usize..][..130],
         [end::TRUNCATED; 130]
     );
-    case.params.max_steps = u32::MAX;
+    case.fill(whole::LIMIT, u32::MAX);
     assert_eq!(
         case.agrees().ended[case.params.offset as usize..][..130],
         [end::RUNNING; 130]

@@ -10,11 +10,11 @@ use crate::oracle::Oracle;
 use crate::paper::DATABASE;
 use burn::tensor::Device as Tensors;
 use footwork::gpu::Device;
-use footwork::kernels::layout::{OBSERVATION, real, whole};
+use footwork::kernels::layout::{GOAL, real, whole};
 use footwork::motion::features::{FEATURE, PLAYED, POSE, TRAJECTORY};
 use footwork::tensors::{read, upload, vector};
-use footwork::train::evaluate::{Controller, Scripted};
-use footwork::world::{Plane, Snapshot, World, open};
+use footwork::train::controller::{Controller, Scripted};
+use footwork::world::{LEVELS, Plane, Setup, Snapshot, Task, World, open};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -38,7 +38,14 @@ impl Pair {
     fn new() -> Self {
         let database = Arc::new(DATABASE.clone());
         let devices = [Device::Cpu, Device::from(gpu())];
-        let world = |device| open(device, &database, Plane::default(), ENVS, HORIZON, 42);
+        let setup = Setup {
+            task: Task::Plane(Plane::default()),
+            envs: ENVS,
+            horizon: HORIZON,
+            seed: 42,
+            level: LEVELS - 1,
+        };
+        let world = |device| open(device, &database, &setup);
         Pair {
             cpu: world(&devices[0]),
             gpu: world(&devices[1]),
@@ -67,7 +74,9 @@ impl Pair {
             if self.parted.contains(&env) {
                 continue;
             }
-            let count = |of: &Snapshot| [0, 1, 2, 3, 4].map(|field| of.whole[field * ENVS + env]);
+            let count = |of: &Snapshot| -> [u32; whole::FIELDS] {
+                std::array::from_fn(|field| of.whole[field * ENVS + env])
+            };
             if count(&cpu) == count(&gpu) {
                 self.close(&cpu, &gpu, env);
             } else {
@@ -139,7 +148,7 @@ impl Pair {
             database: &DATABASE,
             speed: 2.0,
         };
-        let mut action = scripted.act(&seen).expect("action");
+        let mut action = scripted.act(&seen, GOAL).expect("action");
         for value in &mut action {
             *value += 0.5 * draw.normal();
         }
@@ -151,7 +160,7 @@ impl Pair {
             [&mut self.cpu, &mut self.gpu].map(|w| read(w.observe()).expect("observation"));
         let [state, _] = self.snapshots();
         for env in (0..ENVS).filter(|env| !self.parted.contains(env)) {
-            let part = env * OBSERVATION..(env + 1) * OBSERVATION;
+            let part = env * GOAL..(env + 1) * GOAL;
             let (want, got) = (&cpu[part.clone()], &gpu[part]);
             let bar = Bar::of(&state, env);
             assert_eq!(want[..POSE], got[..POSE]);
@@ -167,14 +176,20 @@ impl Pair {
         let snapshots = self.snapshots();
         for (world, before) in [&mut self.cpu, &mut self.gpu].into_iter().zip(snapshots) {
             let sums = read(world.tally()).expect("sums");
-            let fields = [whole::EPISODES, whole::SUCCESSES, whole::LENGTHS];
+            let fields = [
+                whole::EPISODES,
+                whole::SUCCESSES,
+                whole::COLLISIONS,
+                whole::TRUNCATIONS,
+                whole::LENGTHS,
+            ];
             for (sum, field) in sums.iter().zip(fields) {
                 let counted: u32 = before.whole[field * ENVS..(field + 1) * ENVS].iter().sum();
                 assert_eq!(*sum, counted as f32);
             }
             let returns = &before.real[real::RETURNS * ENVS..];
             let sum: f64 = returns.iter().map(|&r| f64::from(r)).sum();
-            assert!((f64::from(sums[3]) - sum).abs() <= 256.0 * f64::from(f32::EPSILON) * sum);
+            assert!((f64::from(sums[5]) - sum).abs() <= 256.0 * f64::from(f32::EPSILON) * sum);
         }
     }
 }

@@ -1,0 +1,65 @@
+//! `footwork ablate`.
+
+use super::Usage;
+use super::train::{Choices, on_interrupt, open};
+use anyhow::Result;
+use clap::{Args, Subcommand};
+use footwork::train::ablation::{ablate, summary};
+use footwork::train::config::Kind;
+use std::path::PathBuf;
+
+#[derive(Subcommand)]
+pub enum Ablate {
+    /// The obstacle task whole, without its hit reward, and without its curriculum
+    Obstacles(Obstacles),
+}
+
+#[derive(Args)]
+pub struct Obstacles {
+    #[command(flatten)]
+    choices: Choices,
+    /// Trainings of each variant, from the seeds 1, 2, ..
+    #[arg(
+        long,
+        default_value_t = 3,
+        value_name = "N",
+        allow_negative_numbers = true
+    )]
+    seeds: u32,
+    /// Folder of all its runs; given again, it goes on where it was
+    #[arg(long, value_name = "DIR", default_value = "runs/ablation")]
+    out: PathBuf,
+}
+
+impl Ablate {
+    pub fn run(self) -> Result<()> {
+        match self {
+            Ablate::Obstacles(obstacles) => obstacles.run(),
+        }
+    }
+}
+
+impl Obstacles {
+    fn run(self) -> Result<()> {
+        if self.seeds == 0 || self.seeds > 100 {
+            return Err(Usage("--seeds must be from 1 to 100".into()).into());
+        }
+        let interrupted = on_interrupt()?;
+        let mut config = self.choices.config(Kind::Obstacles)?;
+        let (device, database) = open(&mut config)?;
+        let outcomes = ablate(
+            &config,
+            self.seeds,
+            &self.out,
+            &database,
+            &device,
+            interrupted,
+        )?;
+        match outcomes {
+            Some(outcomes) => print!("{}", summary(&outcomes)),
+            None => println!("go on with the same command"),
+        }
+        println!("see {}", self.out.display());
+        Ok(())
+    }
+}

@@ -1,0 +1,51 @@
+//! The obstacle maps beside an episode's panel.
+
+use super::{CELLS, Episode, Map, OBSTACLE, SEEN, draw_arrow, draw_outline, seconds};
+use crate::report::Error;
+use crate::report::canvas::{Anchor, Canvas, Pixel};
+use crate::report::chart;
+
+const CELL: f64 = 15.0;
+/// Width and height of a map, in pixels.
+pub const SIDE: f64 = CELL * CELLS as f64;
+
+/// What was seen at the moment, above, and a step before, below.
+pub fn draw(
+    canvas: &mut Canvas<'_>,
+    episode: &Episode,
+    step_s: f32,
+    (left, top): Pixel,
+) -> Result<(), Error> {
+    let now = episode.seen;
+    let titles = [
+        format!("seen at {}", seconds(now, step_s)),
+        format!("and at {}", seconds(now.saturating_sub(1), step_s)),
+    ];
+    for (index, (map, title)) in episode.maps.iter().zip(&titles).enumerate() {
+        let bottom = top + super::SIDE - (1 - index) as f64 * super::SIDE / 2.0;
+        let at = (left, bottom - SIDE - 20.0);
+        canvas.text(title, at, Anchor::Left, chart::NORMAL, SEEN)?;
+        draw_map(canvas, map, (left, bottom - SIDE))?;
+    }
+    let at = (left + SIDE / 2.0, top + super::SIDE + 22.0);
+    let text = "6 m \u{d7} 6 m, ahead is up";
+    canvas.text(text, at, Anchor::Centre, chart::SMALL, chart::MUTED)
+}
+
+fn draw_map(canvas: &mut Canvas<'_>, map: &Map, (left, top): Pixel) -> Result<(), Error> {
+    let (right, bottom) = (left + SIDE, top + SIDE);
+    for (row, cells) in map.iter().enumerate() {
+        for (column, _) in cells.iter().enumerate().filter(|&(_, &blocked)| blocked) {
+            let (x, y) = (right - column as f64 * CELL, bottom - row as f64 * CELL);
+            canvas.rectangle((x - CELL, y - CELL), (x, y), chart::tint(OBSTACLE, 0.75))?;
+        }
+    }
+    for line in 1..CELLS {
+        let along = line as f64 * CELL;
+        let (x, y) = (left + along, top + along);
+        canvas.line(&[(x, top), (x, bottom)], chart::GRID, 1.0)?;
+        canvas.line(&[(left, y), (right, y)], chart::GRID, 1.0)?;
+    }
+    draw_outline(canvas, (left, top), (right, bottom), SEEN, 1.6)?;
+    draw_arrow(canvas, (left + SIDE / 2.0, top + SIDE / 2.0), (0.0, -1.0))
+}

@@ -1,0 +1,180 @@
+//! The task with obstacles, its ablation, and what is refused of them.
+
+use super::{Place, keys, rows};
+use serde_json::Value;
+
+/// Small networks: what is tested here is not how well they learn.
+const SMALL: &str = "[ppo.network]\nsight = [16]\nhidden = [16]\n";
+const TRAIN: &str =
+    "train obstacles --data small.footwork --device cpu --envs 64 --config small.toml";
+
+fn place() -> Place {
+    let place = Place::with_data();
+    place.write("small.toml", SMALL);
+    place
+}
+
+#[test]
+fn a_run_among_obstacles_shows_its_levels_and_its_walks() {
+    let place = place();
+    place.done(&format!("{TRAIN} --steps 2048 --out run"));
+    for name in ["learning_curve.png", "obstacle_walks.png"] {
+        assert!(place.path("run").join(name).exists(), "{name}");
+    }
+    assert_eq!(place.json("run/summary.json")["level"], 0);
+    for row in rows(&place.path("run")) {
+        assert_eq!(row["level"], 0);
+        assert!(row["truncation"].is_number() && row["collision"].is_number());
+    }
+
+    let told = place.done("eval run --episodes 40 --json");
+    let judged: Value = serde_json::from_str(&told.out).unwrap();
+    let levels = judged["levels"].as_array().unwrap();
+    assert_eq!(levels.len(), 10);
+    for (level, found) in levels.iter().enumerate() {
+        assert_eq!(found["level"], level);
+        for key in ["success", "collision", "loiter"] {
+            let share = found[key].as_f64().unwrap();
+            assert!((0.0..=1.0).contains(&share), "{key} of {found}");
+        }
+    }
+    assert_eq!(levels[9]["success"], judged["success"]);
+    assert!(keys(&judged).contains(&"time_to_target_p95_s"));
+
+    let told = place.done("eval run --episodes 20 --baseline");
+    assert!(told.out.contains("level") && told.out.contains("straight at 4 m/s"));
+}
+
+#[test]
+fn options_of_the_task_reach_its_configuration() {
+    let place = place();
+    let options = "--no-hit-reward --no-curriculum --success-bonus 25";
+    place.done(&format!("{TRAIN} {options} --steps 1024 --out run"));
+    let config = place.read("run/config.toml");
+    for line in [
+        "hit_reward = false",
+        "curriculum = false",
+        "success_bonus = 25.0",
+        "count = 100",
+    ] {
+        assert!(config.contains(line), "no {line} in {config}");
+    }
+    assert_eq!(place.json("run/summary.json")["level"], 9);
+}
+
+#[test]
+fn obstacles_that_make_no_sense_are_refused() {
+    let place = place();
+    for (text, parts) in [
+        (
+            "count = -1",
+            &["`obstacles.count` must not be negative"][..],
+        ),
+        ("side_min = 0", &["obstacles.side_min is 0"]),
+        ("side_min = -1", &["obstacles.side_min is -1"]),
+        ("side_max = 0.2", &["obstacles.side_max is 0.2"]),
+        ("speed = -0.5", &["obstacles.speed is -0.5"]),
+        ("speed = nan", &["obstacles.speed is NaN"]),
+        (
+            "square = 2",
+            &["obstacles.square is 2", "start cannot be kept clear"],
+        ),
+        ("reach = 3", &["obstacles.reach is 3"]),
+        ("pass = 1.5", &["obstacles.pass is 1.5"]),
+        ("arrival = \"stay\"", &["unknown variant `stay`"]),
+        ("motoin = \"same\"", &["did you mean `obstacles.motion`"]),
+    ] {
+        place.write("bad.toml", format!("[obstacles]\n{text}"));
+        let train = "train obstacles --data small.footwork --device cpu";
+        place.refused(&format!("{train} --config bad.toml --out run"), 2, parts);
+    }
+    for (text, part) in [
+        ("size = 17", "size of ppo.network.convolutions is 17"),
+        ("size = 0", "size of ppo.network.convolutions is 0"),
+        (
+            "filters = 1000",
+            "filters of ppo.network.convolutions is 1000",
+        ),
+    ] {
+        let rest = ["filters = 8", "size = 4", "stride = 1"];
+        let kept = rest
+            .iter()
+            .filter(|key| key.split(' ').next() != text.split(' ').next());
+        let keys: Vec<&str> = kept.copied().chain([text]).collect();
+        let list = format!("[ppo.network]\nconvolutions = [{{ {} }}]", keys.join(", "));
+        place.write("bad.toml", list);
+        let words = "train obstacles --data small.footwork --config bad.toml --out run";
+        place.refused(words, 2, &[part]);
+    }
+    let twice = "{ filters = 8, size = 9, stride = 1 }";
+    place.write(
+        "bad.toml",
+        format!("[ppo.network]\nconvolutions = [{twice}, {twice}]"),
+    );
+    let words = "train obstacles --data small.footwork --config bad.toml --out run";
+    place.refused(words, 2, &["a filter is larger than what it sees"]);
+    place.write("bad.toml", "[plane]\nreach = 1");
+    place.refused(words, 2, &["unknown key `plane`"]);
+}
+
+#[test]
+fn runs_of_one_task_are_not_gone_on_with_as_another() {
+    let place = place();
+    place.done(&format!("{TRAIN} --steps 1024 --out run"));
+    place.refused(
+        "train plane --resume run --steps 2048",
+        2,
+        &["run is a run of the task `obstacles`, not of `plane`"],
+    );
+    let plane = place
+        .done("train plane --data small.footwork --device cpu --envs 64 --steps 1024 --out plane");
+    assert!(plane.out.contains("1024 steps"), "{plane:?}");
+    // A checkpoint that strayed into the run of another task.
+    let stray = std::fs::read(place.path("plane/checkpoints/last.ckpt")).unwrap();
+    place.write("run/checkpoints/last.ckpt", stray);
+    for words in ["eval run", "train obstacles --resume run --steps 2048"] {
+        let parts = ["of the task `plane` with 17 observations, not of `obstacles` with 529"];
+        place.refused(words, 1, &parts);
+    }
+}
+
+#[test]
+fn an_ablation_is_written_down_and_goes_on_where_it_was() {
+    let place = place();
+    let words = |rest: &str| {
+        format!(
+            "ablate obstacles --data small.footwork --device cpu --envs 64 --config small.toml --out ablation {rest}"
+        )
+    };
+    place.done(&words("--steps 1024 --seeds 1"));
+    for name in [
+        "ablation.png",
+        "ablation.txt",
+        "evaluation.csv",
+        "curves.csv",
+    ] {
+        assert!(place.path("ablation").join(name).exists(), "{name}");
+    }
+    let table = place.read("ablation/ablation.txt");
+    for variant in ["full", "no-hit-reward", "no-curriculum"] {
+        assert!(table.contains(variant), "{table}");
+    }
+    assert_eq!(place.read("ablation/evaluation.csv").lines().count(), 4);
+    let kept = place.read("ablation/full-1/metrics.jsonl");
+
+    let told = place.done(&words("--steps 1024 --seeds 2"));
+    assert!(told.out.contains("no-curriculum"), "{told:?}");
+    assert_eq!(place.read("ablation/evaluation.csv").lines().count(), 7);
+    assert_eq!(place.read("ablation/full-1/metrics.jsonl"), kept);
+
+    // One that was cut short is finished: its times differ, what it learned does not.
+    std::fs::remove_file(place.path("ablation/full-2/checkpoints/last.ckpt")).unwrap();
+    place.done(&words("--steps 1024 --seeds 2"));
+    assert_eq!(place.read("ablation/evaluation.csv").lines().count(), 7);
+    place.refused(
+        &words("--steps 1024 --seeds 1").replace("--envs 64", "--envs 32"),
+        1,
+        &["full-1 holds a run of another configuration"],
+    );
+    place.refused(&words("--seeds 0"), 2, &["--seeds must be from 1 to 100"]);
+}
