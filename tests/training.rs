@@ -11,8 +11,9 @@ use footwork::train::config::{Config, Kind, Preset};
 use footwork::train::controller::{Scripted, Trained};
 use footwork::train::evaluate::hardest;
 use footwork::train::folder::{Folder, Summary};
+use footwork::train::planner::plan;
 use footwork::train::trainer::train;
-use footwork::world::{Plane, Task};
+use footwork::world::{Obstacles, Plane, Task};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -171,6 +172,19 @@ fn learns_to_pass_the_first_level_among_obstacles() {
     run(&config, &database(10.0), Choice::Cpu, out.path(), None).expect("a training");
     let passed = state(out.path()).header.memory.curriculum.passed;
     assert!(passed > 0, "no level passed");
+}
+
+#[test]
+fn plans_reach_what_nothing_is_in_the_way_of() {
+    let database = database(2.0);
+    let task = |count| {
+        Task::Obstacles(Obstacles {
+            count,
+            ..Obstacles::FAST
+        })
+    };
+    assert_eq!(plan(&database, task(0), 9, 6).success, 1.0);
+    assert!(plan(&database, task(100), 9, 6).success >= 0.5);
 }
 
 #[test]

@@ -10,6 +10,7 @@ use footwork::train::controller::{Controller, Scripted, Trained};
 use footwork::train::data;
 use footwork::train::evaluate::{Report, evaluate, hardest};
 use footwork::train::folder::Folder;
+use footwork::train::planner::{Planned, plan};
 use footwork::world::{LEVELS, Task};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -32,6 +33,16 @@ pub struct Eval {
     /// Judge scripted motion matching beside it: a straight trajectory to the target
     #[arg(long)]
     baseline: bool,
+    /// Among obstacles: plan so many of the episodes on the hardest level with full knowledge of
+    /// everything, to see what can be reached at all
+    #[arg(
+        long,
+        default_value_t = 0,
+        value_name = "N",
+        hide_default_value = true,
+        allow_negative_numbers = true
+    )]
+    plan: usize,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -56,6 +67,15 @@ impl Eval {
             Some(hardest) => hardest.clone(),
             None => hardest(&policy, &database, task, self.episodes)?,
         };
+        let planned = match task {
+            Task::Obstacles(_) if self.plan > 0 => Some(plan(
+                &database,
+                task,
+                LEVELS - 1,
+                self.plan.min(self.episodes),
+            )),
+            _ => None,
+        };
         let mut baseline = Vec::new();
         if self.baseline {
             for speed in SPEEDS {
@@ -67,7 +87,7 @@ impl Eval {
             }
         }
         match self.json {
-            true => print_json(&trained, &baseline, &levels),
+            true => print_json(&trained, &baseline, &levels, planned),
             false => {
                 println!(
                     "{} at {} steps, {} episodes",
@@ -77,6 +97,13 @@ impl Eval {
                 );
                 print_levels(&levels);
                 print_table(&trained, &baseline);
+                if let Some(planned) = planned {
+                    println!(
+                        "with full knowledge, {:.1} % of {} episodes can be taken to their target",
+                        100.0 * planned.success,
+                        planned.episodes
+                    );
+                }
                 Ok(())
             }
         }
@@ -113,7 +140,12 @@ fn levels(
         .collect()
 }
 
-fn print_json(trained: &Report, baseline: &[(f32, Report)], levels: &[Report]) -> Result<()> {
+fn print_json(
+    trained: &Report,
+    baseline: &[(f32, Report)],
+    levels: &[Report],
+    planned: Option<Planned>,
+) -> Result<()> {
     let mut object = serde_json::to_value(trained)?;
     if !baseline.is_empty() {
         let rows: Result<Vec<_>, serde_json::Error> = baseline
@@ -138,6 +170,9 @@ fn print_json(trained: &Report, baseline: &[(f32, Report)], levels: &[Report]) -
             })
         });
         object["levels"] = rows.collect();
+    }
+    if let Some(planned) = planned {
+        object["planned"] = serde_json::to_value(planned)?;
     }
     println!("{object}");
     Ok(())

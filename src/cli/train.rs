@@ -222,6 +222,8 @@ impl Choices {
 pub fn open(config: &mut Config) -> Result<(Device, Arc<Database>)> {
     config.check()?;
     let device = Device::open(config.device)?;
+    let observations = config.ppo.batch() * config.task.width();
+    device.holds("observations of an update", observations)?;
     // A resumed run must not change its device because another has appeared.
     config.device = device.choice();
     let (database, notes) = data::load(config.data.as_deref(), config.weights)?;

@@ -48,6 +48,8 @@ pub struct Gpu {
     tensors: TensorDevice,
     /// The adapter's own name.
     pub name: String,
+    /// Bytes a kernel can reach in one buffer.
+    binding: u64,
     /// Lavapipe and its kind: eight lanes, cheap uniform loads, no fast workgroup memory.
     pub software: bool,
 }
@@ -91,6 +93,23 @@ impl Device {
         match self {
             Device::Cpu => format!("cpu ({} threads)", rayon::current_num_threads()),
             Device::Gpu(gpu) => gpu.name.clone(),
+        }
+    }
+
+    /// Refuses an array of so many numbers that one buffer of a GPU cannot hold it.
+    ///
+    /// # Errors
+    /// It is too large; the message says what and by how much.
+    pub fn holds(&self, what: &str, numbers: usize) -> anyhow::Result<()> {
+        let bytes = numbers as u64 * 4;
+        match self {
+            Device::Gpu(gpu) if bytes > gpu.binding => anyhow::bail!(
+                "the {what} take {} MiB and {} reaches {} MiB of a buffer: use a smaller --envs or ppo.horizon",
+                bytes.div_ceil(1 << 20),
+                gpu.name,
+                gpu.binding >> 20
+            ),
+            _ => Ok(()),
         }
     }
 
@@ -153,11 +172,13 @@ impl Gpu {
             .init_with_setup()?;
         let (client, cube) = tensor::client_of(&tensors);
         let name = setup.adapter.get_info().name;
+        let binding = setup.device.limits().max_storage_buffer_binding_size;
         Ok(Gpu {
             client,
             cube,
             tensors,
             name,
+            binding: binding.into(),
             software,
         })
     }

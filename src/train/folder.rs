@@ -19,6 +19,9 @@ pub struct Summary {
     /// Of the curriculum, at the end; the success is of the hardest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub level: Option<u32>,
+    /// Of the ten levels.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub levels_passed: Option<u32>,
     pub device: String,
     pub seed: u32,
     /// `steps`, `time`, `success`, `interrupt` or `failure`.

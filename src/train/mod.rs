@@ -8,6 +8,7 @@ pub mod data;
 pub mod evaluate;
 pub mod folder;
 pub mod milestones;
+pub mod planner;
 pub mod progress;
 pub mod record;
 pub mod trainer;

@@ -19,6 +19,9 @@ pub struct Row {
     /// Of the curriculum, in this update.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub level: Option<u32>,
+    /// Of the ten, before this update.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub levels_passed: Option<u32>,
     /// Episodes that ended in this update.
     pub episodes: f64,
     /// Means over those episodes; nothing if none ended.

@@ -153,6 +153,7 @@ impl<'a> Run<'a> {
         from: Option<Checkpoint>,
     ) -> Result<Self> {
         let ppo = &config.ppo;
+        let width = config.task.width();
         let mut memory = Memory::new(&config.task);
         let setup = Setup {
             task: config.task,
@@ -163,7 +164,6 @@ impl<'a> Run<'a> {
         };
         let mut world = world::open(device, database, &setup);
         let (mut steps, mut earlier_s) = (0, 0.0);
-        let width = config.task.width();
         let learner = match from {
             None => Learner::new(ppo, width, &device.tensors(), config.seed)?,
             Some(checkpoint) => {
@@ -287,6 +287,7 @@ impl<'a> Run<'a> {
             steps: self.steps,
             wall_s: self.wall_s(),
             level: obstacles.then(|| self.memory.curriculum.level()),
+            levels_passed: obstacles.then_some(self.memory.curriculum.passed),
             episodes: tally.episodes,
             success: per_episode(tally.successes),
             collision: per_episode(tally.collisions).filter(|_| obstacles),
@@ -388,6 +389,7 @@ impl<'a> Run<'a> {
             success: 0.0,
             time_to_target_mean_s: 0.0,
             level: obstacles.then(|| self.memory.curriculum.level()),
+            levels_passed: obstacles.then_some(self.memory.curriculum.passed),
             device: self.device.name(),
             seed: self.config.seed,
             stopped_by: "failure",

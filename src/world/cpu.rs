@@ -13,9 +13,10 @@ use crate::tensors::{upload, values};
 use burn::tensor::{Device, Tensor};
 use std::sync::Arc;
 
+#[derive(Clone)]
 pub struct CpuWorld {
     database: Arc<Database>,
-    index: Index,
+    index: Arc<Index>,
     pub rules: Rules,
     /// `[2][TRAJECTORY]`: mean and scale of the trajectory features.
     normal: Vec<f32>,
@@ -47,7 +48,7 @@ impl CpuWorld {
         let (envs, rules) = (setup.envs, setup.rules(&database));
         let count = setup.task.obstacles();
         let mut world = CpuWorld {
-            index: Index::build(&database.rows()),
+            index: Arc::new(Index::build(&database.rows())),
             normal: database.normalisation.trajectory(),
             real: vec![0.0; real::FIELDS * envs],
             whole: vec![0; whole::FIELDS * envs],
@@ -171,7 +172,7 @@ impl CpuWorld {
         self.real[field * self.rules.envs + env]
     }
 
-    /// Goes on with these environments alone.
+    /// Goes on with these environments alone; one may be named several times.
     pub fn keep(&mut self, envs: &[usize]) {
         let (old, count) = (self.rules.envs, self.rules.task.obstacles());
         self.real = gather(&self.real, old, 1, envs);
@@ -181,8 +182,8 @@ impl CpuWorld {
         self.maps = gather(&self.maps, old, MAPS * CELLS, envs);
         self.reward = gather(&self.reward, old, 1, envs);
         self.ended = gather(&self.ended, old, 1, envs);
-        self.queries.truncate(envs.len());
-        self.matched.truncate(envs.len());
+        self.queries.resize(envs.len(), [0.0; PADDED]);
+        self.matched.resize(envs.len(), 0);
         self.rules.envs = envs.len();
     }
 

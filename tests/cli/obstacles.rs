@@ -178,3 +178,13 @@ fn an_ablation_is_written_down_and_goes_on_where_it_was() {
     );
     place.refused(&words("--seeds 0"), 2, &["--seeds must be from 1 to 100"]);
 }
+
+#[test]
+fn a_batch_that_a_device_cannot_hold_is_refused() {
+    let place = place();
+    place.refused(
+        "train obstacles --data small.footwork --device lavapipe --envs 4096 --out run",
+        1,
+        &["observations of an update take 133 MiB", "smaller --envs"],
+    );
+}

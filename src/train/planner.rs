@@ -1,0 +1,143 @@
+//! What full knowledge could reach: a beam search that sees every obstacle and plays every answer of
+//! the search forward before it chooses. What it cannot reach may still be reachable; what it does
+//! reach bounds from below what a policy might.
+
+use super::evaluate::episodes;
+use crate::kernels::layout::{end, real};
+use crate::motion::RATE;
+use crate::motion::database::Database;
+use crate::motion::features::{AHEAD, POSE, TRAJECTORY};
+use crate::motion::frame::to_local;
+use crate::world::Task;
+use crate::world::cpu::CpuWorld;
+use serde::Serialize;
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Episodes planned together.
+const CHUNK: usize = 16;
+/// Steps looked ahead: 12 s.
+const DEPTH: usize = 60;
+/// Places an episode goes on from at every step; two thirds are the nearest to the target.
+const BEAM: usize = 24;
+/// Two places this near are one, m.
+const SAME: f32 = 0.2;
+/// Speeds asked for, m/s, and directions around the character; standing still and walking straight
+/// to the target besides.
+const SPEEDS: [f32; 2] = [1.2, 3.0];
+const DIRECTIONS: usize = 10;
+const ACTIONS: usize = SPEEDS.len() * (DIRECTIONS + 1) + 1;
+
+/// What was found.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Planned {
+    pub episodes: usize,
+    /// Share that a plan takes to the target.
+    pub success: f64,
+}
+
+/// Plans the first `count` evaluation episodes of a level.
+pub fn plan(database: &Arc<Database>, task: Task, level: u32, count: usize) -> Planned {
+    let all = episodes(database, task, level, count);
+    let ids: Vec<usize> = (0..count).collect();
+    let reached: usize = ids
+        .chunks(CHUNK)
+        .map(|chunk| {
+            let mut world = all.clone();
+            world.keep(chunk);
+            explore(world, database)
+        })
+        .sum();
+    Planned {
+        episodes: count,
+        success: reached as f64 / count as f64,
+    }
+}
+
+/// How many of a world's episodes can be taken to their target.
+fn explore(mut world: CpuWorld, database: &Database) -> usize {
+    let count = world.rules.envs;
+    // Which episode each world tries.
+    let mut episode: Vec<usize> = (0..count).collect();
+    let mut reached = vec![false; count];
+    for _ in 0..DEPTH {
+        let children: Vec<usize> = (0..episode.len() * ACTIONS).map(|i| i / ACTIONS).collect();
+        world.keep(&children);
+        episode = children.iter().map(|&parent| episode[parent]).collect();
+        let actions = actions(&world, database);
+        world.play(&actions);
+        for (env, &episode) in episode.iter().enumerate() {
+            reached[episode] |= world.ended[env] == end::REACHED;
+        }
+        let chosen: Vec<usize> = (0..count)
+            .filter(|&one| !reached[one])
+            .flat_map(|one| choose(&world, &episode, one))
+            .collect();
+        if chosen.is_empty() {
+            break;
+        }
+        world.keep(&chosen);
+        episode = chosen.iter().map(|&env| episode[env]).collect();
+    }
+    reached.into_iter().filter(|&reached| reached).count()
+}
+
+/// The worlds one episode goes on from: the nearest to the target, and some of the others for ways
+/// around.
+fn choose(world: &CpuWorld, episode: &[usize], one: usize) -> Vec<usize> {
+    let at = |env: usize| [real::X, real::Z].map(|field| world.field(field, env));
+    let left = |env: usize| {
+        let [x, z] = at(env);
+        (world.field(real::TARGET_X, env) - x).hypot(world.field(real::TARGET_Z, env) - z)
+    };
+    let mut alive: Vec<usize> = (0..episode.len())
+        .filter(|&env| episode[env] == one && world.ended[env] == end::RUNNING)
+        .collect();
+    alive.sort_by(|&a, &b| left(a).total_cmp(&left(b)));
+    let mut taken = HashSet::new();
+    alive.retain(|&env| taken.insert(at(env).map(|place| (place / SAME).round() as i32)));
+    let near = BEAM * 2 / 3;
+    let rest = alive.len().saturating_sub(near);
+    let every = rest.div_ceil(BEAM - near).max(1);
+    let others = alive.iter().skip(near).step_by(every);
+    alive.iter().take(near).chain(others).copied().collect()
+}
+
+/// Normalised actions: each world its own of the [`ACTIONS`] kinds, in turn.
+fn actions(world: &CpuWorld, database: &Database) -> Vec<f32> {
+    let normal = &database.normalisation;
+    let mut actions = Vec::with_capacity(world.rules.envs * TRAJECTORY);
+    for env in 0..world.rules.envs {
+        let (direction, speed) = asked(world, env);
+        for (k, ahead) in AHEAD.iter().enumerate() {
+            let far = speed * *ahead as f32 / RATE;
+            let [x, z] = direction;
+            for (i, value) in [x * far, z * far, x, z].into_iter().enumerate() {
+                let at = POSE + 4 * k + i;
+                actions.push((value - normal.mean[at]) * normal.scale[at]);
+            }
+        }
+    }
+    actions
+}
+
+/// Direction in the character frame and speed of a world's kind of action.
+fn asked(world: &CpuWorld, env: usize) -> ([f32; 2], f32) {
+    let kind = env % ACTIONS;
+    if kind == ACTIONS - 1 {
+        return ([0.0, 1.0], 0.0);
+    }
+    let (speed, way) = (SPEEDS[kind % SPEEDS.len()], kind / SPEEDS.len());
+    if way < DIRECTIONS {
+        let angle = std::f32::consts::TAU * way as f32 / DIRECTIONS as f32;
+        return ([angle.sin(), angle.cos()], speed);
+    }
+    let field = |field: usize| world.field(field, env);
+    let offset = [
+        field(real::TARGET_X) - field(real::X),
+        field(real::TARGET_Z) - field(real::Z),
+    ];
+    let goal = to_local(offset, [field(real::HEADING_X), field(real::HEADING_Z)]);
+    let length = goal[0].hypot(goal[1]).max(1e-6);
+    (goal.map(|g| g / length), speed)
+}
