@@ -6,7 +6,7 @@ use footwork::gpu::{Choice, Device};
 use footwork::kernels::layout::GOAL;
 use footwork::kernels::rng::{gaussian, random4};
 use footwork::motion::features::TRAJECTORY;
-use footwork::ppo::policy::Shape;
+use footwork::ppo::network::Shape;
 use footwork::tensors::{read, upload, vector};
 use footwork::train::config::{Config, Kind, Preset};
 

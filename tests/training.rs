@@ -5,7 +5,7 @@ use footwork::gpu::{Choice, Device};
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
 use footwork::motion::performer;
-use footwork::ppo::policy::Shape;
+use footwork::ppo::network::Shape;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Kind, Preset};
 use footwork::train::controller::{Scripted, Trained};

@@ -178,7 +178,7 @@ impl Gpu {
             cube,
             tensors,
             name,
-            binding: binding.into(),
+            binding,
             software,
         })
     }

@@ -1,14 +1,17 @@
 //! Proximal policy optimisation (Schulman et al. 2017) in burn's tensors: the same code on the
 //! GPU and on the CPU.
 //!
-//! [`policy`] holds the networks, [`convolution`] runs their eyes on the CPU, [`rollout`] lets them act, [`update`] improves them with
+//! [`network`] is the form of the networks, [`policy`] holds them, [`convolution`] runs their eyes on
+//! the CPU, [`rollout`] lets them act, [`study`] takes their gradients, [`update`] improves them with
 //! [`adam`], [`scale`] keeps the critic's targets near one.
 
 pub mod adam;
 pub mod convolution;
+pub mod network;
 pub mod policy;
 pub mod rollout;
 pub mod scale;
+pub mod study;
 pub mod update;
 
 use serde::{Deserialize, Serialize};
@@ -49,7 +52,10 @@ pub struct Ppo {
     pub max_gradient: f64,
     /// Starting standard deviation of the actions, in normalised units, as a natural logarithm.
     pub log_std: f32,
-    pub network: policy::Network,
+    /// It may not exceed a ceiling that falls linearly from `log_std` to this over `anneal_steps`;
+    /// at `log_std` or above there is none.
+    pub final_log_std: f32,
+    pub network: network::Network,
 }
 
 impl Ppo {

@@ -4,7 +4,7 @@ use super::config::Config;
 use crate::kernels::layout::{AXES, CELLS, MAPS, boxes, real, whole};
 use crate::ppo::Ppo;
 use crate::ppo::adam::Adam;
-use crate::ppo::policy::{Network, Shape};
+use crate::ppo::network::{Network, Shape};
 use crate::ppo::scale::Scale;
 use crate::ppo::update::Learner;
 use crate::store::{Arrays, Format, StoreError};
