@@ -21,7 +21,7 @@ fn world(criterion: &mut Criterion) {
     let database = Arc::new(database);
     let tasks = [
         Task::Plane(Plane::default()),
-        Task::Obstacles(Obstacles::PAPER),
+        Task::Obstacles(Obstacles::PRINTED),
     ];
     let mut group = criterion.benchmark_group("world");
     for choice in [Choice::Cpu, Choice::Lavapipe, Choice::Gpu] {

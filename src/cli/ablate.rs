@@ -4,18 +4,20 @@ use super::Usage;
 use super::train::{Choices, on_interrupt, open};
 use anyhow::Result;
 use clap::{Args, Subcommand};
-use footwork::train::ablation::{ablate, summary};
+use footwork::train::ablation::{PARTS, READINGS, Variant, ablate, summary};
 use footwork::train::config::Kind;
 use std::path::PathBuf;
 
 #[derive(Subcommand)]
 pub enum Ablate {
-    /// The obstacle task whole, without its hit reward, and without its curriculum
-    Obstacles(Obstacles),
+    /// The task with obstacles: the method whole, without its hit reward, without its curriculum
+    Obstacles(Choice),
+    /// The task with obstacles: the paper's reward as printed, and other readings of it
+    Readings(Choice),
 }
 
 #[derive(Args)]
-pub struct Obstacles {
+pub struct Choice {
     #[command(flatten)]
     choices: Choices,
     /// Trainings of each variant, from the seeds 1, 2, ..
@@ -34,13 +36,14 @@ pub struct Obstacles {
 impl Ablate {
     pub fn run(self) -> Result<()> {
         match self {
-            Ablate::Obstacles(obstacles) => obstacles.run(),
+            Ablate::Obstacles(choice) => choice.run(&PARTS),
+            Ablate::Readings(choice) => choice.run(&READINGS),
         }
     }
 }
 
-impl Obstacles {
-    fn run(self) -> Result<()> {
+impl Choice {
+    fn run(self, variants: &[Variant]) -> Result<()> {
         if self.seeds == 0 || self.seeds > 100 {
             return Err(Usage("--seeds must be from 1 to 100".into()).into());
         }
@@ -48,6 +51,7 @@ impl Obstacles {
         let mut config = self.choices.config(Kind::Obstacles)?;
         let (device, database) = open(&mut config)?;
         let outcomes = ablate(
+            variants,
             &config,
             self.seeds,
             &self.out,
@@ -56,7 +60,7 @@ impl Obstacles {
             interrupted,
         )?;
         match outcomes {
-            Some(outcomes) => print!("{}", summary(&outcomes)),
+            Some(outcomes) => print!("{}", summary(variants, &outcomes)),
             None => println!("go on with the same command"),
         }
         println!("see {}", self.out.display());

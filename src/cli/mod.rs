@@ -23,7 +23,7 @@ enum Command {
     /// Train a policy
     #[command(subcommand)]
     Train(train::Train),
-    /// Train a task with and without the parts of its method
+    /// Train variants of a task side by side
     #[command(subcommand)]
     Ablate(ablate::Ablate),
     /// Judge a trained policy on a fixed set of episodes

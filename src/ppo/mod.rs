@@ -52,9 +52,6 @@ pub struct Ppo {
     pub max_gradient: f64,
     /// Starting standard deviation of the actions, in normalised units, as a natural logarithm.
     pub log_std: f32,
-    /// It may not exceed a ceiling that falls linearly from `log_std` to this over `anneal_steps`;
-    /// at `log_std` or above there is none.
-    pub final_log_std: f32,
     pub network: network::Network,
 }
 

@@ -203,10 +203,6 @@ impl Learner {
         }
         if config.anneal_steps > 0 {
             let done = (steps as f64 / config.anneal_steps as f64).min(1.0);
-            if config.final_log_std < config.log_std {
-                let fall = f64::from(config.final_log_std - config.log_std);
-                self.limit_log_std(f64::from(config.log_std) + done * fall);
-            }
             let ceiling = config.learning_rate * (1.0 - done * (1.0 - config.final_rate));
             self.learning_rate = if config.target_kl > 0.0 {
                 self.learning_rate.min(ceiling)
@@ -221,16 +217,6 @@ impl Learner {
                 self.kl_coefficient *= 0.5;
             }
         }
-    }
-}
-
-impl Learner {
-    /// The logarithms of the standard deviations are the last parameters.
-    fn limit_log_std(&mut self, ceiling: f64) {
-        let rest = self.shape.parameters() - TRAJECTORY;
-        let log_std = self.parameters.clone().narrow(0, rest, TRAJECTORY);
-        let rest = self.parameters.clone().narrow(0, 0, rest);
-        self.parameters = Tensor::cat(vec![rest, log_std.clamp_max(ceiling)], 0);
     }
 }
 

@@ -1,5 +1,6 @@
-//! What each part of the method is worth: the paper's ablation (section 6, figure 6), every variant
-//! trained from several seeds and judged on the hardest level.
+//! Variants of the task with obstacles side by side, trained from several seeds each and judged on the
+//! hardest level: what each part of the method is worth (paper, section 6, figure 6), and what the
+//! readings of its reward lead to.
 
 use super::checkpoint::Checkpoint;
 use super::config::Config;
@@ -14,6 +15,7 @@ use crate::motion::database::Database;
 use crate::report::ablation::{self, Method};
 use crate::report::table::table;
 use crate::store::write_whole;
+use crate::world::task::Arrival;
 use crate::world::{Obstacles, Task};
 use anyhow::{Result, bail};
 use std::fmt::Write;
@@ -29,7 +31,7 @@ pub struct Variant {
 }
 
 /// The whole method, then each without one part.
-pub const VARIANTS: [Variant; 3] = [
+pub const PARTS: [Variant; 3] = [
     Variant {
         name: "full",
         change: |_| {},
@@ -44,6 +46,43 @@ pub const VARIANTS: [Variant; 3] = [
     },
 ];
 
+/// The paper's reward (its equation 4) as printed, then in other readings.
+pub const READINGS: [Variant; 6] = [
+    Variant {
+        name: "printed",
+        change: |task| *task = Obstacles::PRINTED,
+    },
+    Variant {
+        name: "arrival-continues",
+        change: |task| {
+            *task = Obstacles::PRINTED;
+            task.arrival = Arrival::Continue;
+        },
+    },
+    Variant {
+        name: "and-targets-clear",
+        change: |task| {
+            *task = Obstacles::PRINTED;
+            (task.arrival, task.target_clear) = (Arrival::Continue, true);
+        },
+    },
+    Variant {
+        name: "and-hits-shifted",
+        change: |task| *task = Obstacles::PAPER,
+    },
+    Variant {
+        name: "that-but-terminal",
+        change: |task| {
+            *task = Obstacles::PAPER;
+            task.arrival = Arrival::Terminal;
+        },
+    },
+    Variant {
+        name: "progress",
+        change: |task| *task = Obstacles::FAST,
+    },
+];
+
 /// One variant's training from one seed.
 pub struct Outcome {
     pub variant: &'static str,
@@ -53,13 +92,14 @@ pub struct Outcome {
     pub report: Report,
 }
 
-/// Trains all variants from the seeds 1 to `seeds` in folders of `out`, and writes `ablation.png`,
+/// Trains all `variants` from the seeds 1 to `seeds` in folders of `out`, and writes `ablation.png`,
 /// `ablation.txt`, `evaluation.csv` and `curves.csv` there. What an earlier call has finished is kept,
 /// what it has begun, or ended after fewer steps, is gone on with. `None` if it was interrupted.
 ///
 /// # Errors
 /// See [`train`]; or `out` holds runs of another configuration.
 pub fn ablate(
+    variants: &[Variant],
     base: &Config,
     seeds: u32,
     out: &Path,
@@ -70,10 +110,10 @@ pub fn ablate(
     let mut outcomes = Vec::new();
     // Seed by seed, so that a first picture of all variants is there soon.
     for seed in 1..=seeds {
-        for variant in &VARIANTS {
+        for variant in variants {
             let config = configure(base, variant, seed);
             let path = out.join(format!("{}-{seed}", variant.name));
-            eprintln!("{} of {}", path.display(), VARIANTS.len() * seeds as usize);
+            eprintln!("{} of {}", path.display(), variants.len() * seeds as usize);
             let folder = finish(&config, &path, database, device, interrupted)?;
             if interrupted.load(Ordering::Relaxed) {
                 return Ok(None);
@@ -87,7 +127,7 @@ pub fn ablate(
                 report: hardest(&policy, database, config.task, EPISODES)?,
             });
         }
-        write(out, &outcomes)?;
+        write(out, variants, &outcomes)?;
     }
     Ok(Some(outcomes))
 }
@@ -142,24 +182,27 @@ fn finish(
     Ok(folder)
 }
 
-fn write(out: &Path, outcomes: &[Outcome]) -> Result<()> {
+fn write(out: &Path, variants: &[Variant], outcomes: &[Outcome]) -> Result<()> {
     let of = |name: &'static str| outcomes.iter().filter(move |o| o.variant == name);
     let curve = |outcome: &Outcome| outcome.rows.iter().map(point).collect();
-    let methods = VARIANTS.iter().enumerate().map(|(colour, variant)| Method {
+    let methods = variants.iter().enumerate().map(|(colour, variant)| Method {
         name: variant.name.to_string(),
         colour,
         seeds: of(variant.name).map(curve).collect(),
     });
     let methods: Vec<_> = methods.collect();
     ablation::draw(&out.join("ablation.png"), &methods)?;
-    write_whole(&out.join("ablation.txt"), summary(outcomes).as_bytes())?;
+    write_whole(
+        &out.join("ablation.txt"),
+        summary(variants, outcomes).as_bytes(),
+    )?;
     write_whole(&out.join("evaluation.csv"), evaluation(outcomes).as_bytes())?;
     write_whole(&out.join("curves.csv"), curves(outcomes).as_bytes())?;
     Ok(())
 }
 
 /// A table of the variants: means over the seeds on the hardest level.
-pub fn summary(outcomes: &[Outcome]) -> String {
+pub fn summary(variants: &[Variant], outcomes: &[Outcome]) -> String {
     let headers = [
         "variant",
         "seeds",
@@ -170,7 +213,7 @@ pub fn summary(outcomes: &[Outcome]) -> String {
         "time s",
         "episode s",
     ];
-    let rows: Vec<_> = VARIANTS
+    let rows: Vec<_> = variants
         .iter()
         .map(|variant| {
             let found: Vec<&Report> = outcomes

@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn levels_are_passed_by_enough_recent_episodes_and_never_lost() {
-        let task = Obstacles::PAPER;
+        let task = Obstacles::PRINTED;
         let mut run = Curriculum::on(0);
         let mut update = |episodes, successes| {
             let passed = run.advance(&tally(episodes, successes), &task, 256);
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn many_environments_need_more_episodes() {
         let mut run = Curriculum::on(0);
-        assert!(!run.advance(&tally(999.0, 999.0), &Obstacles::PAPER, 4000));
-        assert!(run.advance(&tally(1.0, 1.0), &Obstacles::PAPER, 4000));
+        assert!(!run.advance(&tally(999.0, 999.0), &Obstacles::PRINTED, 4000));
+        assert!(run.advance(&tally(1.0, 1.0), &Obstacles::PRINTED, 4000));
     }
 }

@@ -115,7 +115,7 @@ pub const LEVELS: u32 = 10;
 
 impl Obstacles {
     /// The paper's numbers and its reward as printed.
-    pub const PAPER: Obstacles = Obstacles {
+    pub const PRINTED: Obstacles = Obstacles {
         count: 100,
         side_min: 0.5,
         side_max: 3.0,
@@ -138,13 +138,22 @@ impl Obstacles {
         pass: 0.4,
     };
 
+    /// The reading of the paper's reward that can be learned from: as printed, standing about pays
+    /// (`BENCHMARKS.md` compares them).
+    pub const PAPER: Obstacles = Obstacles {
+        target_clear: true,
+        hit_shift: true,
+        arrival: Arrival::Continue,
+        ..Self::PRINTED
+    };
+
     /// What trains best.
     pub const FAST: Obstacles = Obstacles {
         target_clear: true,
         reward: Reward::Progress,
         hit_shift: true,
-        collision: -5.0,
-        ..Self::PAPER
+        collision: -10.0,
+        ..Self::PRINTED
     };
 }
 

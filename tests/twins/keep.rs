@@ -73,7 +73,7 @@ fn narrows(task: Task) {
 
 #[test]
 fn a_few_walk_on_among_obstacles_as_among_all() {
-    narrows(Task::Obstacles(Obstacles::PAPER));
+    narrows(Task::Obstacles(Obstacles::PRINTED));
 }
 
 #[test]
@@ -83,7 +83,7 @@ fn a_few_walk_on_on_the_plane_as_among_all() {
 
 #[test]
 fn none_may_be_kept() {
-    let mut world = world(Task::Obstacles(Obstacles::PAPER));
+    let mut world = world(Task::Obstacles(Obstacles::PRINTED));
     world.keep(&[]);
     world.play(&[]);
     assert!(world.real.is_empty() && world.observation().is_empty());

@@ -303,7 +303,7 @@ fn assert_seen(want: &[f32], got: &[f32]) {
 
 #[test]
 fn two_hundred_steps_of_the_papers_task_agree() {
-    Pair::new(Obstacles::PAPER).play(200);
+    Pair::new(Obstacles::PRINTED).play(200);
 }
 
 #[test]
@@ -322,7 +322,7 @@ fn every_other_switch_agrees() {
 /// A state put back goes on as the one it was taken of.
 #[test]
 fn a_snapshot_of_one_device_goes_on_on_the_other() {
-    let mut pair = Pair::new(Obstacles::PAPER);
+    let mut pair = Pair::new(Obstacles::PRINTED);
     let mut draw = Draw::new(3);
     for _ in 0..HORIZON {
         let action = draw.normals(ENVS * TRAJECTORY);

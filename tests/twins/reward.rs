@@ -212,7 +212,7 @@ fn weights(task: Obstacles) -> step::Params {
 
 #[test]
 fn the_papers_reward_is_equation_4_and_its_bonus() {
-    let params = weights(Obstacles::PAPER);
+    let params = weights(Obstacles::PRINTED);
     let worlds = Worlds::stepped(&params);
     for env in 0..ENVS {
         let distance = Worlds::distance(&worlds.real, env);
@@ -232,7 +232,7 @@ fn every_switch_of_the_reward_has_its_weight() {
         let p = weights(task);
         [p.near, p.progress, p.clear, p.shift, p.bonus, p.crash]
     };
-    let paper = Obstacles::PAPER;
+    let paper = Obstacles::PRINTED;
     assert_eq!(of(paper), [1.0, 0.0, 1.0, 0.0, 10.0, 0.0]);
     let without = Obstacles {
         hit_reward: false,
