@@ -28,22 +28,24 @@ pub struct Choice {
         allow_negative_numbers = true
     )]
     seeds: u32,
-    /// Folder of all its runs; given again, it goes on where it was
-    #[arg(long, value_name = "DIR", default_value = "runs/ablation")]
-    out: PathBuf,
+    /// Folder of all its runs; given again, it goes on where it was [default: runs/ablation or
+    /// runs/readings]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
 impl Ablate {
     pub fn run(self) -> Result<()> {
         match self {
-            Ablate::Obstacles(choice) => choice.run(&PARTS),
-            Ablate::Readings(choice) => choice.run(&READINGS),
+            Ablate::Obstacles(choice) => choice.run(&PARTS, "runs/ablation"),
+            Ablate::Readings(choice) => choice.run(&READINGS, "runs/readings"),
         }
     }
 }
 
 impl Choice {
-    fn run(self, variants: &[Variant]) -> Result<()> {
+    fn run(self, variants: &[Variant], folder: &str) -> Result<()> {
+        let out = self.out.unwrap_or(folder.into());
         if self.seeds == 0 || self.seeds > 100 {
             return Err(Usage("--seeds must be from 1 to 100".into()).into());
         }
@@ -54,7 +56,7 @@ impl Choice {
             variants,
             &config,
             self.seeds,
-            &self.out,
+            &out,
             &database,
             &device,
             interrupted,
@@ -63,7 +65,7 @@ impl Choice {
             Some(outcomes) => print!("{}", summary(variants, &outcomes)),
             None => println!("go on with the same command"),
         }
-        println!("see {}", self.out.display());
+        println!("see {}", out.display());
         Ok(())
     }
 }

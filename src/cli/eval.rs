@@ -55,6 +55,10 @@ impl Eval {
         }
         let (folder, path) = self.locate()?;
         let config = folder.read_config()?;
+        if self.plan > 0 && matches!(config.task, Task::Plane(_)) {
+            let why = "--plan is for runs among obstacles: on the plane nothing is in the way";
+            return Err(Usage(why.into()).into());
+        }
         let (database, _) = data::load(config.data.as_deref(), config.weights)?;
         let checkpoint = Checkpoint::load_for(&path, &config.task, database.fingerprint)?;
         let (database, task) = (Arc::new(database), checkpoint.header.task);
@@ -67,15 +71,8 @@ impl Eval {
             Some(hardest) => hardest.clone(),
             None => hardest(&policy, &database, task, self.episodes)?,
         };
-        let planned = match task {
-            Task::Obstacles(_) if self.plan > 0 => Some(plan(
-                &database,
-                task,
-                LEVELS - 1,
-                self.plan.min(self.episodes),
-            )),
-            _ => None,
-        };
+        let planned = (self.plan > 0)
+            .then(|| plan(&database, task, LEVELS - 1, self.plan.min(self.episodes)));
         let mut baseline = Vec::new();
         if self.baseline {
             for speed in SPEEDS {

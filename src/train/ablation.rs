@@ -175,6 +175,12 @@ fn finish(
         false => None,
     };
     let done = checkpoint.as_ref().map_or(0, |found| found.header.steps);
+    if done >= config.steps + config.batch() {
+        bail!(
+            "{} has done {done} steps, more than are asked for: give --steps {done}, or another --out",
+            path.display()
+        );
+    }
     if done < config.steps {
         folder.write_config(config)?;
         train(config, &folder, database, device, checkpoint, interrupted)?;

@@ -129,6 +129,11 @@ fn runs_of_one_task_are_not_gone_on_with_as_another() {
     let plane = place
         .done("train plane --data small.footwork --device cpu --envs 64 --steps 1024 --out plane");
     assert!(plane.out.contains("1024 steps"), "{plane:?}");
+    place.refused(
+        "eval plane --plan 3",
+        2,
+        &["--plan is for runs among obstacles"],
+    );
     // A checkpoint that strayed into the run of another task.
     let stray = std::fs::read(place.path("plane/checkpoints/last.ckpt")).unwrap();
     place.write("run/checkpoints/last.ckpt", stray);
@@ -176,6 +181,10 @@ fn an_ablation_is_written_down_and_goes_on_where_it_was() {
         1,
         &["full-1 holds a run of another configuration"],
     );
+    // More steps go on from there; fewer would judge what was not asked for.
+    place.done(&words("--steps 2048 --seeds 1"));
+    let fewer = words("--steps 1024 --seeds 1");
+    place.refused(&fewer, 1, &["full-1 has done 2048 steps"]);
     place.refused(&words("--seeds 0"), 2, &["--seeds must be from 1 to 100"]);
 }
 
