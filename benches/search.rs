@@ -7,27 +7,31 @@
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use footwork::kernels::rng::{gaussian, index_below, random4};
 use footwork::kernels::search_exact;
-use footwork::motion::database::PADDED;
+use footwork::motion::database::{Database, PADDED};
 use footwork::motion::features::{FEATURE, POSE};
 use footwork::motion::normalise::Weights;
-use footwork::search::Index;
 use footwork::train::data;
 use std::hint::black_box;
 use std::path::PathBuf;
 
-fn queries(rows: &[[f32; PADDED]], noise: f32, count: u32) -> Vec<[f32; PADDED]> {
-    let pick =
-        |i, stream| &rows[index_below(random4(1, i, 0, stream)[0], rows.len() as u32) as usize];
-    (0..count)
-        .map(|i| {
-            let (pose, future) = (pick(i, 0), pick(i, 1));
-            std::array::from_fn(|d| match d {
-                0..POSE => pose[d],
-                POSE..FEATURE => future[d] + noise * gaussian(random4(2, i, d as u32, 0)),
-                _ => 1.0,
-            })
-        })
-        .collect()
+fn queries(database: &Database, noise: f32, count: u32) -> (Vec<u32>, Vec<[f32; PADDED]>) {
+    let candidates = &database.candidates;
+    let pick = |i, stream| {
+        let bits = random4(1, i, 0, stream)[0];
+        candidates[index_below(bits, candidates.len() as u32) as usize]
+    };
+    let query = |i| {
+        let (pose, future) = (pick(i, 0), pick(i, 1));
+        let query = std::array::from_fn(|d| match d {
+            0..POSE => database.features[pose as usize][d],
+            POSE..FEATURE => {
+                database.features[future as usize][d] + noise * gaussian(random4(2, i, d as u32, 0))
+            }
+            _ => 1.0,
+        });
+        (pose, query)
+    };
+    (0..count).map(query).unzip()
 }
 
 fn search(criterion: &mut Criterion) {
@@ -35,33 +39,32 @@ fn search(criterion: &mut Criterion) {
     let (database, _) =
         data::load(path.as_deref(), Weights::PAPER).expect("the data of FOOTWORK_DATA");
     let rows = database.rows();
-    let index = Index::build(&rows);
+    let index = database.index();
     eprintln!(
         "{} candidates, index {:.1} MB",
         rows.len(),
         index.bytes() as f64 / 1e6
     );
     let mut group = criterion.benchmark_group("search");
-    for (name, noise) in [("calm", 0.1), ("noisy", 1.0)] {
-        let queries = queries(&rows, noise, 4096);
+    for (name, noise) in [("calm", 0.1), ("noisy", 1.0), ("wild", 2.6)] {
+        let (frames, queries) = queries(&database, noise, 4096);
         group.throughput(Throughput::Elements(queries.len() as u64));
         group.bench_function(format!("pruned, one core, {name}"), |b| {
             b.iter(|| {
-                queries
-                    .iter()
-                    .map(|query| u64::from(index.nearest(query).index))
+                let each = frames.iter().zip(&queries);
+                each.map(|(&frame, query)| u64::from(index.nearest(frame, query).index))
                     .sum::<u64>()
             });
         });
         group.bench_function(format!("pruned, all cores, {name}"), |b| {
             b.iter_batched_ref(
                 || vec![0; queries.len()],
-                |found| index.nearest_all(black_box(&queries), found),
+                |found| index.nearest_all(&frames, black_box(&queries), found),
                 BatchSize::LargeInput,
             );
         });
     }
-    let queries = queries(&rows, 1.0, 16);
+    let (_, queries) = queries(&database, 1.0, 16);
     group.throughput(Throughput::Elements(queries.len() as u64));
     group.bench_function("plain, one core", |b| {
         let params = search_exact::Params {

@@ -95,7 +95,9 @@ impl Train {
             Train::Obstacles(obstacles) => {
                 let change = |task: &mut Task| {
                     if let Task::Obstacles(task) = task {
-                        task.hit_reward &= !obstacles.no_hit_reward;
+                        if obstacles.no_hit_reward {
+                            task.hit_reward = 0.0;
+                        }
                         task.curriculum &= !obstacles.no_curriculum;
                         task.success_bonus = obstacles.success_bonus.unwrap_or(task.success_bonus);
                     }

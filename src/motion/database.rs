@@ -6,10 +6,12 @@ use super::frame::to_local;
 use super::normalise::{Normalisation, Weights};
 use super::roles::Roles;
 use super::skeleton::Skeleton;
+use crate::search::{Index, MEMORY};
 use crate::store::{Arrays, Format, StoreError};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use std::sync::{Arc, OnceLock};
 
 /// Frames at a clip's end whose future is unknown: played, never matched.
 pub const TAIL: usize = AHEAD[2];
@@ -61,6 +63,7 @@ pub struct Database {
     pub motion: Vec<RootMotion>,
     /// Changes with anything that changes what a policy meets: features and root motion.
     pub fingerprint: u32,
+    index: OnceLock<Arc<Index>>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -172,6 +175,7 @@ impl Database {
             candidates,
             motion,
             fingerprint: hash.finalize(),
+            index: OnceLock::new(),
         }
     }
 
@@ -189,6 +193,12 @@ impl Database {
             .iter()
             .map(|&frame| self.features[frame as usize])
             .collect()
+    }
+
+    /// The index of all candidates, built when it is first asked for.
+    pub fn index(&self) -> Arc<Index> {
+        let build = || Arc::new(Index::build(&self.features, &self.candidates, MEMORY));
+        self.index.get_or_init(build).clone()
     }
 
     /// Ground velocity (m/s, character frame: left, forward) and turning rate (degrees a second,

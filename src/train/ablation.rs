@@ -38,7 +38,7 @@ pub const PARTS: [Variant; 3] = [
     },
     Variant {
         name: "no-hit-reward",
-        change: |task| task.hit_reward = false,
+        change: |task| task.hit_reward = 0.0,
     },
     Variant {
         name: "no-curriculum",

@@ -271,6 +271,7 @@ fn check_obstacles(task: &Obstacles, envs: usize) -> Result<(), ConfigError> {
     within("obstacles.reach", task.reach, 0.001, 1000.0)?;
     within("obstacles.reach", task.reach, 0.001, first.min(last))?;
     within("obstacles.max_steps", task.max_steps, 1, 10_000)?;
+    within("obstacles.hit_reward", task.hit_reward, 0.0, 1e6)?;
     within("obstacles.success_bonus", task.success_bonus, -1e6, 1e6)?;
     within("obstacles.collision", task.collision, -1e6, 0.0)?;
     within("obstacles.pass", task.pass, 0.0, 1.0)

@@ -48,7 +48,7 @@ impl CpuWorld {
         let (envs, rules) = (setup.envs, setup.rules(&database));
         let count = setup.task.obstacles();
         let mut world = CpuWorld {
-            index: Arc::new(Index::build(&database.rows())),
+            index: database.index(),
             normal: database.normalisation.trajectory(),
             real: vec![0.0; real::FIELDS * envs],
             whole: vec![0; whole::FIELDS * envs],
@@ -138,7 +138,9 @@ impl CpuWorld {
             &mut self.queries,
             &self.rules.query(),
         );
-        self.index.nearest_all(&self.queries, &mut self.matched);
+        let frames = &self.whole[whole::FRAME * self.rules.envs..][..self.rules.envs];
+        self.index
+            .nearest_all(frames, &self.queries, &mut self.matched);
         if obstacles {
             collide::twin(
                 &self.database.candidates,

@@ -109,7 +109,7 @@ impl Rules {
                     reach: task.reach,
                     near,
                     progress,
-                    clear: f32::from(task.hit_reward),
+                    clear: task.hit_reward,
                     shift: f32::from(task.hit_shift),
                     bonus: task.success_bonus,
                     crash: task.collision,

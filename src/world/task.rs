@@ -63,9 +63,9 @@ pub struct Obstacles {
     /// Steps after which an episode is truncated.
     pub max_steps: u32,
     pub reward: Reward,
-    /// Reward for asking for positions outside obstacles: exp(-hits).
-    pub hit_reward: bool,
-    /// Less 1, so that it is a penalty.
+    /// Reward for asking for positions outside obstacles: times exp(-hits).
+    pub hit_reward: f32,
+    /// Times exp(-hits) - 1 instead, so that it is a penalty.
     pub hit_shift: bool,
     /// Reward for reaching the target.
     pub success_bonus: f32,
@@ -129,7 +129,7 @@ impl Obstacles {
         reach: 0.5,
         max_steps: 1000,
         reward: Reward::Paper,
-        hit_reward: true,
+        hit_reward: 1.0,
         hit_shift: false,
         success_bonus: 10.0,
         arrival: Arrival::Terminal,

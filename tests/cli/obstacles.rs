@@ -52,7 +52,7 @@ fn options_of_the_task_reach_its_configuration() {
     place.done(&format!("{TRAIN} {options} --steps 1024 --out run"));
     let config = place.read("run/config.toml");
     for line in [
-        "hit_reward = false",
+        "hit_reward = 0.0",
         "curriculum = false",
         "success_bonus = 25.0",
         "count = 100",

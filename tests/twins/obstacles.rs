@@ -12,7 +12,6 @@ use burn::tensor::Device as Tensors;
 use footwork::gpu::Device;
 use footwork::kernels::layout::{AXES, CELLS, GOAL, MAPS, boxes, real, whole};
 use footwork::motion::features::{POSE, TRAJECTORY};
-use footwork::search::Index;
 use footwork::tensors::{read, upload, vector};
 use footwork::train::controller::{Controller, Scripted};
 use footwork::world::task::{Arrival, Motion};
@@ -31,7 +30,6 @@ struct Pair {
     task: Obstacles,
     worlds: [Box<dyn World>; 2],
     tensors: [Tensors; 2],
-    index: Index,
     /// Environments that went another way on an edge.
     parted: HashSet<usize>,
     /// Episodes ended, collisions, arrivals and hits, so that the test is known to meet them.
@@ -54,7 +52,6 @@ impl Pair {
             task,
             worlds,
             tensors: devices.map(|device| device.tensors()),
-            index: Index::build(&database.rows()),
             parted: HashSet::new(),
             met: [0; 4],
         }
@@ -136,9 +133,10 @@ impl Pair {
 
     /// Where the character is at the six frames of a step.
     fn walked(&self, before: &Snapshot, env: usize, action: &[f32]) -> [Point; 6] {
-        let mut query = DATABASE.features[before.whole[whole::FRAME * ENVS + env] as usize];
+        let frame = before.whole[whole::FRAME * ENVS + env];
+        let mut query = DATABASE.features[frame as usize];
         query[POSE..][..TRAJECTORY].copy_from_slice(&action[..TRAJECTORY]);
-        let matched = self.index.nearest(&query).index as usize;
+        let matched = DATABASE.index().nearest(frame, &query).index as usize;
         let frame = DATABASE.candidates[matched] as usize;
         let path = |frame: usize| DATABASE.path[frame].map(f64::from);
         let [x, z, hx, hz] = path(frame);

@@ -235,7 +235,7 @@ fn every_switch_of_the_reward_has_its_weight() {
     let paper = Obstacles::PRINTED;
     assert_eq!(of(paper), [1.0, 0.0, 1.0, 0.0, 10.0, 0.0]);
     let without = Obstacles {
-        hit_reward: false,
+        hit_reward: 0.0,
         success_bonus: 0.0,
         ..paper
     };

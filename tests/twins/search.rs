@@ -9,7 +9,7 @@ use footwork::kernels::search_exact;
 use footwork::motion::database::PADDED;
 use footwork::motion::features::{FEATURE, POSE};
 use footwork::motion::normalise::Weights;
-use footwork::search::Index;
+use footwork::search::{Index, MEMORY};
 use footwork::train::data;
 use footwork::world::search::Search;
 use proptest::prelude::*;
@@ -142,17 +142,58 @@ fn by_twin(rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) -> Vec<u32> {
     found
 }
 
-fn on_cpu(index: &Index, queries: &[[f32; PADDED]]) -> Vec<u32> {
-    let mut found = vec![u32::MAX; queries.len()];
-    index.nearest_all(queries, &mut found);
-    found
+/// An index of `rows` in a database where the queries' poses are frames too, behind the rows.
+struct Indexed<'a> {
+    index: Index,
+    rows: &'a [[f32; PADDED]],
+    queries: &'a [[f32; PADDED]],
 }
 
-/// The index gives the twin's rows and distances, bit for bit.
+impl<'a> Indexed<'a> {
+    fn new(rows: &'a [[f32; PADDED]], queries: &'a [[f32; PADDED]], memory: usize) -> Self {
+        let candidates: Vec<u32> = (0..rows.len() as u32).collect();
+        Indexed {
+            index: Index::build(&[rows, queries].concat(), &candidates, memory),
+            rows,
+            queries,
+        }
+    }
+
+    fn frame(&self, query: usize) -> u32 {
+        (self.rows.len() + query) as u32
+    }
+
+    fn nearest_all(&self) -> Vec<u32> {
+        let frames: Vec<u32> = (0..self.queries.len()).map(|q| self.frame(q)).collect();
+        let mut found = vec![u32::MAX; frames.len()];
+        self.index.nearest_all(&frames, self.queries, &mut found);
+        found
+    }
+}
+
+fn on_cpu(rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) -> Vec<u32> {
+    Indexed::new(rows, queries, MEMORY).nearest_all()
+}
+
+/// The index gives the twin's rows and distances, bit for bit, however little memory it is given.
 #[track_caller]
-fn same_as_twin(index: &Index, rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) {
-    for (query, twin) in queries.iter().zip(by_twin(rows, queries)) {
-        let found = index.nearest(query);
+fn same_as_twin(rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) {
+    let by_twin = by_twin(rows, queries);
+    for memory in [MEMORY, rows.len() * rows.len() / 1024, 0] {
+        let indexed = Indexed::new(rows, queries, memory);
+        same(&indexed, &by_twin);
+    }
+}
+
+#[track_caller]
+fn same(indexed: &Indexed, by_twin: &[u32]) {
+    let Indexed {
+        index,
+        rows,
+        queries,
+    } = indexed;
+    for (at, (query, &twin)) in queries.iter().zip(by_twin).enumerate() {
+        let found = index.nearest(indexed.frame(at), query);
         let distance = search_exact::squared(&rows[twin as usize], query);
         assert_eq!(
             (found.index, found.distance.to_bits()),
@@ -163,15 +204,9 @@ fn same_as_twin(index: &Index, rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]
 
 #[test]
 fn the_cpu_finds_what_the_oracle_finds() {
-    let synthetic = Index::build(&SYNTHETIC.rows);
-    let duplicated = Index::build(&DUPLICATED.rows);
     for kind in &*KINDS {
-        let index = match kind.name {
-            "duplicated" => &duplicated,
-            _ => &synthetic,
-        };
-        kind.judge("cpu", &on_cpu(index, &kind.queries));
-        same_as_twin(index, &kind.data.rows, &kind.queries[..BY_TWIN]);
+        kind.judge("cpu", &on_cpu(&kind.data.rows, &kind.queries));
+        same_as_twin(&kind.data.rows, &kind.queries[..BY_TWIN]);
     }
 }
 
@@ -204,11 +239,11 @@ fn finds_a_winner_in_the_first_and_in_the_last_row() {
             queries[query] = rows[place].map(|value| value + 1e-3);
             queries[query][FEATURE] = 1.0;
         }
-        let (oracle, index) = (Oracle::new(&rows), Index::build(&rows));
+        let oracle = Oracle::new(&rows);
         let best = oracle.nearest_all(&queries);
         assert_eq!(best[1], count - 1);
         assert!(count == 1 || best[0] == 0);
-        same_as_twin(&index, &rows, &queries);
+        same_as_twin(&rows, &queries);
         for (form, gpu) in forms() {
             let found = on_gpu(&gpu, &rows, &queries);
             assert_eq!(
@@ -229,7 +264,7 @@ fn of_equal_rows_the_first_wins() {
         queries[0][..FEATURE].copy_from_slice(&rows[0][..FEATURE]);
         queries[2] = queries[2].map(|value| value * 1e5);
         queries[2][FEATURE] = 1.0;
-        assert_eq!(on_cpu(&Index::build(&rows), &queries), [0; 3]);
+        assert_eq!(on_cpu(&rows, &queries), [0; 3]);
         for (form, gpu) in forms() {
             assert_eq!(
                 on_gpu(&gpu, &rows, &queries),
@@ -257,7 +292,7 @@ fn finds_the_nearest_where_scores_cancel() {
     let (rows, queries) = (huddle(5000, 0.0), huddle(257, 1.0));
     let oracle = Oracle::new(&rows);
     let best = oracle.nearest_all(&queries);
-    same_as_twin(&Index::build(&rows), &rows, &queries);
+    same_as_twin(&rows, &queries);
     for (form, gpu) in forms() {
         let found = on_gpu(&gpu, &rows, &queries);
         for ((query, found), &best) in queries.iter().zip(found).zip(&best) {
@@ -272,7 +307,7 @@ fn finds_the_nearest_where_scores_cancel() {
 fn finds_the_nearest_for_tens_of_thousands_of_queries_at_once() {
     let rows = &SYNTHETIC.rows;
     let queries = Draw::new(11).rows(35_000, 1.0);
-    let by_cpu = on_cpu(&Index::build(rows), &queries);
+    let by_cpu = on_cpu(rows, &queries);
     assert!(on_gpu(&gpu(), rows, &queries) == by_cpu);
 }
 
@@ -281,9 +316,8 @@ fn finds_the_nearest_for_tens_of_thousands_of_queries_at_once() {
 fn a_query_that_is_no_number_finds_a_row() {
     let rows = Draw::new(9).rows(300, 0.0);
     for bad in [f32::NAN, f32::INFINITY, f32::MAX] {
-        let query = [bad; PADDED];
-        let found = Index::build(&rows).nearest(&query).index;
-        assert_eq!(found, 0, "{bad}");
+        let queries = [[bad; PADDED], rows[7]];
+        assert_eq!(on_cpu(&rows, &queries), [0, 7], "{bad}");
     }
 }
 
@@ -315,6 +349,6 @@ proptest! {
         let mut queries: Rows = draw.rows(8, 1.0).into_iter().map(weigh).collect();
         queries.extend((0..4).map(|_| rows[draw.below(count)]));
         queries.extend(draw.rows(2, 1.0));
-        same_as_twin(&Index::build(&rows), &rows, &queries);
+        same_as_twin(&rows, &queries);
     }
 }

@@ -1,0 +1,243 @@
+//! Exact nearest-row search on the CPU: all cores over the queries, sixteen rows at a time, and
+//! most rows left unread because a lower bound says that they cannot be nearest.
+//!
+//! The bound of a leaf is the least distance of its poses to the query's, which is known
+//! beforehand ([`poses`]), and the distance of the query's trajectory to the box around the leaf's
+//! along the principal axes ([`axes`], [`tree`]). Bounds are widened by more than rounding can do,
+//! and distances are those of [`crate::kernels::search_exact::squared`]: the answer is, bit for
+//! bit, that of [`crate::kernels::search_exact::twin`], the lowest index of equals included.
+
+mod axes;
+mod poses;
+mod tree;
+
+use crate::motion::database::PADDED;
+use crate::motion::features::{FEATURE, POSE, TRAJECTORY};
+use axes::Axes;
+use multiversion::multiversion;
+use poses::{Poses, Row};
+use rayon::prelude::*;
+use tree::{Boxes, LANES, Lanes, Tree};
+
+/// Queries a task of the thread pool answers.
+const TASK: usize = 16;
+/// Bytes of the table of poses unless asked otherwise.
+pub const MEMORY: usize = 256 << 20;
+
+/// The rows, sorted for pruning, and what is known of their poses.
+pub struct Index {
+    axes: Axes,
+    tree: Tree,
+    poses: Poses,
+    /// Length of the longest trajectory.
+    longest: f32,
+}
+
+/// The nearest row and its squared distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    pub index: u32,
+    pub distance: f32,
+}
+
+impl Index {
+    /// Of the rows `candidates` of `frames`, of which there must be at least one. The table of poses
+    /// takes at most `memory` bytes, or as little as it can.
+    pub fn build(frames: &[[f32; PADDED]], candidates: &[u32], memory: usize) -> Self {
+        let rows: Vec<_> = candidates.iter().map(|&at| frames[at as usize]).collect();
+        let axes = Axes::of(&rows);
+        let tree = Tree::of(&rows, &axes);
+        Index {
+            poses: Poses::of(frames, &tree, memory),
+            longest: rows.iter().map(length).fold(0.0, f32::max),
+            tree,
+            axes,
+        }
+    }
+
+    /// Bytes of memory held.
+    pub fn bytes(&self) -> usize {
+        self.tree.bytes() + self.poses.bytes()
+    }
+
+    /// Nearest candidate of one query, whose pose half is that of `frame`; of equals the lowest.
+    pub fn nearest(&self, frame: u32, query: &[f32; PADDED]) -> Nearest {
+        nearest(self, frame, query)
+    }
+
+    /// Nearest candidate of every query, on all cores.
+    pub fn nearest_all(&self, frames: &[u32], queries: &[[f32; PADDED]], found: &mut [u32]) {
+        frames
+            .par_chunks(TASK)
+            .zip(queries.par_chunks(TASK))
+            .zip(found.par_chunks_mut(TASK))
+            .for_each(|((frames, queries), found)| {
+                for ((&frame, query), found) in frames.iter().zip(queries).zip(found) {
+                    *found = self.nearest(frame, query).index;
+                }
+            });
+    }
+}
+
+/// Of a row's trajectory.
+fn length(row: &[f32; PADDED]) -> f32 {
+    let squares = row[POSE..FEATURE].iter().map(|value| value * value);
+    squares.sum::<f32>().sqrt()
+}
+
+/// What is asked, in the forms the bounds need.
+struct Asked<'a> {
+    query: &'a [f32; PADDED],
+    poses: Row<'a>,
+    trajectory: [f32; TRAJECTORY],
+    /// Rounding may lengthen a bound (no square) by this and by [`RELATIVE`]: a rotated number
+    /// and its difference to another have errors of a few 2^-24 of the two vectors' lengths.
+    slack: f32,
+}
+
+const RELATIVE: f32 = 1.0 + 1e-5;
+const SLACK: f32 = 4e-6;
+
+/// The best so far.
+struct Best {
+    nearest: Nearest,
+    /// What lies beyond this bound cannot be nearer, nor as near.
+    limit: f32,
+}
+
+impl Best {
+    #[inline(always)]
+    fn offer(&mut self, id: u32, distance: f32, slack: f32) {
+        let best = self.nearest;
+        if distance < best.distance || (distance == best.distance && id < best.index) {
+            self.nearest = Nearest {
+                index: id,
+                distance,
+            };
+            let length = distance.sqrt() * RELATIVE + slack;
+            self.limit = length * length;
+        }
+    }
+}
+
+#[multiversion(targets(
+    "x86_64+avx512f+avx512vl+avx512dq+avx512bw+fma",
+    "x86_64+avx2+fma",
+    "aarch64+neon"
+))]
+fn nearest(index: &Index, frame: u32, query: &[f32; PADDED]) -> Nearest {
+    let asked = Asked {
+        query,
+        poses: index.poses.row(frame),
+        trajectory: index.axes.turn(query),
+        slack: SLACK * (index.longest + length(query)),
+    };
+    // Row 0 stands when nothing is nearer than infinity, as with a query that is not a number.
+    let mut best = Best {
+        nearest: Nearest {
+            index: 0,
+            distance: f32::INFINITY,
+        },
+        limit: f32::INFINITY,
+    };
+    // First the group whose bound is least: its winner lets most others be skipped.
+    let mut near = (f32::INFINITY, 0);
+    let mut outer = Vec::with_capacity(index.tree.outer.len() * LANES);
+    for (at, boxes) in index.tree.outer.iter().enumerate() {
+        outer.extend(bounds(
+            boxes,
+            &asked.trajectory,
+            asked.poses.to_groups(at * LANES),
+        ));
+    }
+    for (group, &bound) in outer.iter().enumerate() {
+        if bound < near.0 {
+            near = (bound, group);
+        }
+    }
+    visit(&index.tree, near.1, &asked, &mut best);
+    for (group, &bound) in outer.iter().enumerate() {
+        // Not the other way round: a bound that is no number skips nothing.
+        if bound > best.limit || group == near.1 {
+            continue;
+        }
+        visit(&index.tree, group, &asked, &mut best);
+    }
+    best.nearest
+}
+
+/// Looks into the leaves of a group that may hold something nearer, or as near and lower.
+#[inline(always)]
+fn visit(tree: &Tree, group: usize, asked: &Asked, best: &mut Best) {
+    let Some(boxes) = tree.inner.get(group) else {
+        return;
+    };
+    let inner = bounds(boxes, &asked.trajectory, asked.poses.to_leaves(group));
+    for (lane, bound) in inner.into_iter().enumerate() {
+        if bound > best.limit {
+            continue;
+        }
+        let leaf = group * LANES + lane;
+        let distances = distances(&tree.leaves[leaf], asked.query);
+        let mut least = distances[0];
+        for d in distances {
+            least = if d < least { d } else { least };
+        }
+        if least > best.nearest.distance {
+            continue;
+        }
+        for (&id, distance) in tree.ids[leaf].iter().zip(distances) {
+            best.offer(id, distance, asked.slack);
+        }
+    }
+}
+
+/// Squared distances to sixteen boxes, on top of what is known of the poses.
+#[inline(always)]
+fn bounds(boxes: &Boxes, asked: &[f32; TRAJECTORY], poses: [f32; LANES]) -> [f32; LANES] {
+    let mut sum = poses;
+    for axis in 0..TRAJECTORY {
+        let (lows, highs) = (&boxes.low[axis], &boxes.high[axis]);
+        for ((sum, &low), &high) in sum.iter_mut().zip(lows).zip(highs) {
+            let (below, above) = (low - asked[axis], asked[axis] - high);
+            let outside = if below > above { below } else { above };
+            let outside = if outside > 0.0 { outside } else { 0.0 };
+            *sum = outside.mul_add(outside, *sum);
+        }
+    }
+    sum
+}
+
+/// Squared distances to sixteen rows, in the four interleaved sums of
+/// [`squared`](crate::kernels::search_exact::squared).
+#[inline(always)]
+fn distances(rows: &Lanes, query: &[f32; PADDED]) -> [f32; LANES] {
+    let (mut a, mut b, mut c, mut d) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    for quad in (0..FEATURE).step_by(4) {
+        add(&rows[quad], query[quad], &mut a);
+        add(&rows[quad + 1], query[quad + 1], &mut b);
+        add(&rows[quad + 2], query[quad + 2], &mut c);
+        if quad + 3 < FEATURE {
+            add(&rows[quad + 3], query[quad + 3], &mut d);
+        }
+    }
+    let mut joined = [0.0; LANES];
+    for (lane, joined) in joined.iter_mut().enumerate() {
+        *joined = (a[lane] + b[lane]) + (c[lane] + d[lane]);
+    }
+    joined
+}
+
+#[inline(always)]
+fn add(rows: &[f32; LANES], asked: f32, sums: &mut [f32; LANES]) {
+    for (sum, &row) in sums.iter_mut().zip(rows) {
+        let difference = row - asked;
+        *sum = difference.mul_add(difference, *sum);
+    }
+}
+
+impl std::fmt::Debug for Index {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "index of {} bytes", self.bytes())
+    }
+}

@@ -1,0 +1,175 @@
+//! How near the poses of the database come to each other: a query's pose half is always a row of
+//! the database itself, so how far it is from every leaf's poses is known before it is asked.
+//!
+//! For every block of neighbouring frames and every leaf, and every group of leaves: the least
+//! distance from any pose of the one to any pose of the other, rounded down to a byte.
+
+use super::tree::{LANES, Lanes, Tree};
+use crate::motion::database::PADDED;
+use crate::motion::features::POSE;
+use multiversion::multiversion;
+use rayon::prelude::*;
+
+pub struct Poses {
+    /// Frames a block.
+    block: usize,
+    groups: usize,
+    /// `[blocks][groups]`
+    by_group: Vec<u8>,
+    /// `[blocks][groups][LANES]`; empty where memory was short.
+    by_leaf: Vec<[u8; LANES]>,
+    /// Distance a step of a code.
+    step: f32,
+}
+
+/// Frames a block, from the tightest on.
+const BLOCKS: [usize; 6] = [4, 8, 16, 32, 64, 128];
+/// The largest blocks that are worth a code for every leaf.
+const BY_LEAF: usize = 16;
+/// Keeps a code's distance below the true one whatever was rounded on the way.
+const DOWN: f32 = 1.0 - 1e-5;
+
+impl Poses {
+    /// From all `frames` to the rows of `tree`, in at most `memory` bytes; if the coarsest table
+    /// needs more, in that.
+    pub fn of(frames: &[[f32; PADDED]], tree: &Tree, memory: usize) -> Self {
+        let groups = tree.inner.len();
+        let fits =
+            |&block: &usize, codes: usize| frames.len().div_ceil(block) * groups * codes <= memory;
+        let (block, lanes) = match BLOCKS.iter().find(|block| fits(block, LANES + 1)) {
+            Some(&block) if block <= BY_LEAF => (block, LANES),
+            _ => match BLOCKS.iter().find(|block| fits(block, 1)) {
+                Some(&block) => (block, 0),
+                None => (BLOCKS[BLOCKS.len() - 1], 0),
+            },
+        };
+        let blocks = frames.len().div_ceil(block);
+        let mut poses = Poses {
+            block,
+            groups,
+            by_group: vec![0; blocks * groups],
+            by_leaf: vec![[0; LANES]; blocks * groups * lanes / LANES],
+            step: step(frames),
+        };
+        let (step, by_leaf) = (poses.step, !poses.by_leaf.is_empty());
+        let mut none = vec![];
+        let leaves: Vec<&mut [[u8; LANES]]> = match by_leaf {
+            true => poses.by_leaf.chunks_mut(groups).collect(),
+            false => {
+                none.resize_with(blocks, || &mut [][..]);
+                none
+            }
+        };
+        frames
+            .par_chunks(block)
+            .zip(poses.by_group.par_chunks_mut(groups))
+            .zip(leaves)
+            .for_each(|((frames, by_group), by_leaf)| {
+                for (group, least) in by_group.iter_mut().enumerate() {
+                    let leaves = &tree.leaves[group * LANES..][..LANES];
+                    let codes = codes(frames, leaves, step);
+                    *least = codes.into_iter().fold(u8::MAX, u8::min);
+                    if let Some(kept) = by_leaf.get_mut(group) {
+                        *kept = codes;
+                    }
+                }
+            });
+        poses
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.by_group.len() + self.by_leaf.len() * LANES
+    }
+
+    /// What is known of one frame's pose.
+    #[inline(always)]
+    pub fn row(&self, frame: u32) -> Row<'_> {
+        let first = frame as usize / self.block * self.groups;
+        Row {
+            by_group: &self.by_group[first..][..self.groups],
+            by_leaf: self.by_leaf.get(first..first + self.groups),
+            step: self.step,
+        }
+    }
+}
+
+/// Lower bounds of one frame's squared distances to the poses of all leaves.
+#[derive(Clone, Copy)]
+pub struct Row<'a> {
+    by_group: &'a [u8],
+    by_leaf: Option<&'a [[u8; LANES]]>,
+    step: f32,
+}
+
+impl Row<'_> {
+    /// To sixteen groups, from a multiple of sixteen on; 0 for those past the end.
+    #[inline(always)]
+    pub fn to_groups(&self, first: usize) -> [f32; LANES] {
+        let codes = &self.by_group[first..];
+        let mut padded = [0; LANES];
+        match codes.first_chunk() {
+            Some(full) => padded = *full,
+            None => padded[..codes.len()].copy_from_slice(codes),
+        }
+        self.squares(padded)
+    }
+
+    /// To the leaves of a group.
+    #[inline(always)]
+    pub fn to_leaves(&self, group: usize) -> [f32; LANES] {
+        match self.by_leaf {
+            Some(codes) => self.squares(codes[group]),
+            None => self.squares([self.by_group[group]; LANES]),
+        }
+    }
+
+    #[inline(always)]
+    fn squares(&self, codes: [u8; LANES]) -> [f32; LANES] {
+        codes.map(|code| {
+            let distance = f32::from(code) * self.step;
+            distance * distance
+        })
+    }
+}
+
+/// Codes reach five times the deviation of all poses: beyond, they need not tell how far.
+fn step(frames: &[[f32; PADDED]]) -> f32 {
+    let n = frames.len() as f64;
+    let variance: f64 = (0..POSE)
+        .map(|i| {
+            let values = || frames.iter().map(|row| f64::from(row[i]));
+            let mean = values().sum::<f64>() / n;
+            values().map(|v| (v - mean).powi(2)).sum::<f64>() / n
+        })
+        .sum();
+    // Of equal poses any step would do but 0.
+    (variance.sqrt() as f32 * (2.5 / 255.0)).max(1e-20)
+}
+
+#[multiversion(targets(
+    "x86_64+avx512f+avx512vl+avx512dq+avx512bw+fma",
+    "x86_64+avx2+fma",
+    "aarch64+neon"
+))]
+fn codes(frames: &[[f32; PADDED]], leaves: &[Lanes], step: f32) -> [u8; LANES] {
+    let mut codes = [0; LANES];
+    for (code, leaf) in codes.iter_mut().zip(leaves) {
+        let mut least = [f32::INFINITY; LANES];
+        for frame in frames {
+            let mut sum = [0.0f32; LANES];
+            for d in 0..POSE {
+                for (sum, &row) in sum.iter_mut().zip(&leaf[d]) {
+                    let difference = row - frame[d];
+                    *sum = difference.mul_add(difference, *sum);
+                }
+            }
+            for (least, sum) in least.iter_mut().zip(sum) {
+                *least = if sum < *least { sum } else { *least };
+            }
+        }
+        let nearest = least.into_iter().fold(f32::INFINITY, f32::min);
+        // The cast stops at 255.
+        *code = (nearest.sqrt() * DOWN / step) as u8;
+    }
+    codes
+}

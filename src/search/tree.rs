@@ -1,0 +1,150 @@
+//! The rows, sorted so that near ones lie together: a balanced k-d tree's leaves of sixteen rows,
+//! sixteen leaves a group.
+
+use super::axes::Axes;
+use crate::motion::database::PADDED;
+use crate::motion::features::{FEATURE, POSE, TRAJECTORY};
+use rayon::prelude::*;
+
+/// Rows a leaf, leaves a group: the width of the widest vector registers.
+pub const LANES: usize = 16;
+const GROUP: usize = LANES * LANES;
+/// The pose's share in how rows are sorted. Poses are bounded by a table however they lie, so it
+/// is the boxes of the trajectories that should be small.
+const POSE_SHARE: f32 = 0.5;
+
+/// Sixteen feature rows, dimension by dimension. Lanes without a row hold infinity: never nearest.
+pub type Lanes = [[f32; LANES]; FEATURE];
+/// Corners of sixteen boxes, axis by axis.
+pub type Corners = [[f32; LANES]; TRAJECTORY];
+
+/// Sixteen boxes around trajectories, along the principal axes.
+pub struct Boxes {
+    pub low: Corners,
+    pub high: Corners,
+}
+
+pub struct Tree {
+    /// `[groups * LANES]`
+    pub leaves: Vec<Lanes>,
+    /// Original index of every row of every leaf.
+    pub ids: Vec<[u32; LANES]>,
+    /// Boxes of the leaves, by group.
+    pub inner: Vec<Boxes>,
+    /// Boxes of the groups, sixteen at a time.
+    pub outer: Vec<Boxes>,
+}
+
+/// What rows are sorted by, and behind it what their boxes are made of.
+type Key = [f32; FEATURE];
+/// One box: its lower and its upper corner.
+type Corner = [[f32; TRAJECTORY]; 2];
+/// A box around nothing.
+const NOTHING: Corner = [[f32::INFINITY; TRAJECTORY], [f32::NEG_INFINITY; TRAJECTORY]];
+
+impl Tree {
+    /// Of `rows`, of which there must be at least one.
+    pub fn of(rows: &[[f32; PADDED]], axes: &Axes) -> Self {
+        let key = |row: &[f32; PADDED]| -> Key {
+            let turned = axes.turn(row);
+            std::array::from_fn(|d| match d {
+                0..POSE => POSE_SHARE * row[d],
+                _ => turned[d - POSE],
+            })
+        };
+        let keys: Vec<Key> = rows.par_iter().map(key).collect();
+        let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+        sort(&keys, &mut order);
+        let groups = rows.len().div_ceil(GROUP);
+        let mut leaves = vec![[[f32::INFINITY; LANES]; FEATURE]; groups * LANES];
+        let mut ids = vec![[u32::MAX; LANES]; groups * LANES];
+        let mut corners = vec![NOTHING; groups * LANES];
+        for (at, &id) in order.iter().enumerate() {
+            let (leaf, lane) = (at / LANES, at % LANES);
+            ids[leaf][lane] = id;
+            for (lanes, value) in leaves[leaf].iter_mut().zip(rows[id as usize]) {
+                lanes[lane] = value;
+            }
+            let place = &keys[id as usize][POSE..];
+            let place = std::array::from_fn(|axis| place[axis]);
+            corners[leaf] = around(corners[leaf], [place, place]);
+        }
+        let groups: Vec<Corner> = corners
+            .chunks(LANES)
+            .map(|leaves| leaves.iter().copied().fold(NOTHING, around))
+            .collect();
+        Tree {
+            leaves,
+            ids,
+            inner: corners.chunks(LANES).map(pack).collect(),
+            outer: groups.chunks(LANES).map(pack).collect(),
+        }
+    }
+
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.leaves[..])
+            + size_of_val(&self.ids[..])
+            + size_of_val(&self.inner[..])
+            + size_of_val(&self.outer[..])
+    }
+}
+
+/// Splits at the median of the widest dimension until a leaf is left. Halves hold whole groups,
+/// later whole leaves, so that leaves fill up and groups are subtrees.
+fn sort(keys: &[Key], order: &mut [u32]) {
+    if order.len() <= LANES {
+        // Ascending ids: the first of equals in a leaf has the lowest.
+        order.sort_unstable();
+        return;
+    }
+    let unit = if order.len() > GROUP { GROUP } else { LANES };
+    let middle = (order.len().div_ceil(unit) / 2) * unit;
+    let dimension = widest(keys, order);
+    order.select_nth_unstable_by(middle, |&a, &b| {
+        keys[a as usize][dimension]
+            .total_cmp(&keys[b as usize][dimension])
+            .then(a.cmp(&b))
+    });
+    let (left, right) = order.split_at_mut(middle);
+    rayon::join(|| sort(keys, left), || sort(keys, right));
+}
+
+/// The dimension of the largest variance.
+fn widest(keys: &[Key], order: &[u32]) -> usize {
+    let (mut sum, mut square) = ([0.0f64; FEATURE], [0.0f64; FEATURE]);
+    for &id in order {
+        for dimension in 0..FEATURE {
+            let value = f64::from(keys[id as usize][dimension]);
+            sum[dimension] += value;
+            square[dimension] += value * value;
+        }
+    }
+    let n = order.len() as f64;
+    let variance = |d: usize| square[d] - sum[d] * sum[d] / n;
+    (0..FEATURE)
+        .max_by(|&a, &b| variance(a).total_cmp(&variance(b)))
+        .unwrap_or(0)
+}
+
+/// The box around two boxes.
+fn around([low, high]: Corner, [other_low, other_high]: Corner) -> Corner {
+    [
+        std::array::from_fn(|axis| low[axis].min(other_low[axis])),
+        std::array::from_fn(|axis| high[axis].max(other_high[axis])),
+    ]
+}
+
+/// Lanes without a box are infinitely far away, and so are boxes around nothing.
+fn pack(corners: &[Corner]) -> Boxes {
+    let lanes = |corner: usize| -> Corners {
+        let value = |lane: usize, axis: usize| match corners.get(lane) {
+            Some(of) if of[0][axis] < f32::INFINITY => of[corner][axis],
+            _ => f32::INFINITY,
+        };
+        std::array::from_fn(|axis| std::array::from_fn(|lane| value(lane, axis)))
+    };
+    Boxes {
+        low: lanes(0),
+        high: lanes(1),
+    }
+}
