@@ -179,11 +179,11 @@ fn visit(tree: &Tree, group: usize, asked: &Asked, best: &mut Best) {
         }
         let leaf = group * LANES + lane;
         let distances = distances(&tree.leaves[leaf], asked.query);
-        let mut least = distances[0];
-        for d in distances {
-            least = if d < least { d } else { least };
+        let mut nearer = false;
+        for distance in distances {
+            nearer |= distance <= best.nearest.distance;
         }
-        if least > best.nearest.distance {
+        if !nearer {
             continue;
         }
         for (&id, distance) in tree.ids[leaf].iter().zip(distances) {
@@ -212,15 +212,16 @@ fn bounds(boxes: &Boxes, asked: &[f32; TRAJECTORY], poses: [f32; LANES]) -> [f32
 /// [`squared`](crate::kernels::search_exact::squared).
 #[inline(always)]
 fn distances(rows: &Lanes, query: &[f32; PADDED]) -> [f32; LANES] {
-    let (mut a, mut b, mut c, mut d) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
-    for quad in (0..FEATURE).step_by(4) {
-        add(&rows[quad], query[quad], &mut a);
-        add(&rows[quad + 1], query[quad + 1], &mut b);
-        add(&rows[quad + 2], query[quad + 2], &mut c);
-        if quad + 3 < FEATURE {
-            add(&rows[quad + 3], query[quad + 3], &mut d);
+    let mut sums = [[0.0; LANES]; 4];
+    for quad in 0..FEATURE / 4 {
+        for (i, sum) in sums.iter_mut().enumerate() {
+            add(&rows[4 * quad + i], query[4 * quad + i], sum);
         }
     }
+    for (i, sum) in sums.iter_mut().enumerate().take(FEATURE % 4) {
+        add(&rows[FEATURE / 4 * 4 + i], query[FEATURE / 4 * 4 + i], sum);
+    }
+    let [a, b, c, d] = sums;
     let mut joined = [0.0; LANES];
     for (lane, joined) in joined.iter_mut().enumerate() {
         *joined = (a[lane] + b[lane]) + (c[lane] + d[lane]);

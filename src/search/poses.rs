@@ -152,8 +152,8 @@ fn step(frames: &[[f32; PADDED]]) -> f32 {
     "aarch64+neon"
 ))]
 fn codes(frames: &[[f32; PADDED]], leaves: &[Lanes], step: f32) -> [u8; LANES] {
-    let mut codes = [0; LANES];
-    for (code, leaf) in codes.iter_mut().zip(leaves) {
+    let mut nearest = [f32::INFINITY; LANES];
+    for (nearest, leaf) in nearest.iter_mut().zip(leaves) {
         let mut least = [f32::INFINITY; LANES];
         for frame in frames {
             let mut sum = [0.0f32; LANES];
@@ -167,7 +167,12 @@ fn codes(frames: &[[f32; PADDED]], leaves: &[Lanes], step: f32) -> [u8; LANES] {
                 *least = if sum < *least { sum } else { *least };
             }
         }
-        let nearest = least.into_iter().fold(f32::INFINITY, f32::min);
+        for least in least {
+            *nearest = if least < *nearest { least } else { *nearest };
+        }
+    }
+    let mut codes = [0; LANES];
+    for (code, nearest) in codes.iter_mut().zip(nearest) {
         // The cast stops at 255.
         *code = (nearest.sqrt() * DOWN / step) as u8;
     }

@@ -151,6 +151,7 @@ impl Obstacles {
     pub const FAST: Obstacles = Obstacles {
         target_clear: true,
         reward: Reward::Progress,
+        hit_reward: 0.1,
         hit_shift: true,
         collision: -10.0,
         ..Self::PRINTED
