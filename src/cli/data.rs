@@ -137,13 +137,15 @@ impl Synth {
 
 fn save(database: &Database, path: &Path) -> Result<()> {
     database.save(path)?;
+    database.save_index(path)?;
     println!(
-        "{}: {} clips, {:.1} minutes, {} candidates, fingerprint {:08x}",
+        "{}: {} clips, {:.1} minutes, {} candidates, fingerprint {:08x}; beside it the search's index, {:.1} MB",
         path.display(),
         database.clips.len(),
         database.minutes(),
         database.candidates.len(),
         database.fingerprint,
+        database.index().bytes() as f64 / 1e6,
     );
     Ok(())
 }

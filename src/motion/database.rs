@@ -10,7 +10,7 @@ use crate::search::{Index, MEMORY};
 use crate::store::{Arrays, Format, StoreError};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 /// Frames at a clip's end whose future is unknown: played, never matched.
@@ -222,6 +222,12 @@ impl Database {
             .collect()
     }
 
+    /// Writes the search's index to its place beside the database at `path`, to be found by
+    /// [`Database::load`].
+    pub fn save_index(&self, path: &Path) -> Result<(), StoreError> {
+        self.index().save(&index_beside(path), self.fingerprint)
+    }
+
     /// Writes one checksummed file, whole or not at all.
     pub fn save(&self, path: &Path) -> Result<(), StoreError> {
         let header = Header {
@@ -296,8 +302,25 @@ impl Database {
         }
         let hips = hips.into_iter().map(Vec3::from_array).collect();
         let rotations = rotations.into_iter().map(Quat::from_array).collect();
-        Ok(Self::join(header, features, ground, hips, rotations))
+        let database = Self::join(header, features, ground, hips, rotations);
+        let Database {
+            fingerprint,
+            features,
+            candidates,
+            ..
+        } = &database;
+        if let Some(index) = Index::load(&index_beside(path), *fingerprint, features, candidates) {
+            database.index.get_or_init(|| Arc::new(index));
+        }
+        Ok(database)
     }
+}
+
+/// `walk.footwork.index` for `walk.footwork`.
+fn index_beside(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_os_string();
+    name.push(".index");
+    PathBuf::from(name)
 }
 
 fn pad(row: &[f32; FEATURE]) -> [f32; PADDED] {

@@ -50,7 +50,7 @@ fn covariance(rows: &[[f32; PADDED]]) -> Matrix {
 /// Eigenvalues, and eigenvectors as columns, of a symmetric matrix: Jacobi's rotations, each of
 /// which clears one element off the diagonal.
 fn eigen(mut matrix: Matrix) -> ([f64; TRAJECTORY], Matrix) {
-    /// Convergence is quadratic; ten sweeps are plenty for so small a matrix.
+    /// Convergence is quadratic: these are plenty for so small a matrix.
     const SWEEPS: usize = 20;
     let mut vectors: Matrix =
         std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
@@ -71,10 +71,9 @@ fn eigen(mut matrix: Matrix) -> ([f64; TRAJECTORY], Matrix) {
                 for row in &mut vectors {
                     rotate(row, p, q, cos, sin);
                 }
-                for column in 0..TRAJECTORY {
-                    let (a, b) = (matrix[p][column], matrix[q][column]);
-                    matrix[p][column] = cos * a - sin * b;
-                    matrix[q][column] = sin * a + cos * b;
+                let (above, below) = matrix.split_at_mut(q);
+                for (a, b) in above[p].iter_mut().zip(&mut below[0]) {
+                    (*a, *b) = (cos * *a - sin * *b, sin * *a + cos * *b);
                 }
             }
         }
@@ -122,8 +121,8 @@ mod tests {
         let covariance = covariance(&turned);
         for i in 0..TRAJECTORY {
             assert!(i == 0 || covariance[i][i] <= covariance[i - 1][i - 1]);
-            for j in 0..i {
-                assert!(covariance[i][j].abs() < 1e-6);
+            for off in &covariance[i][..i] {
+                assert!(off.abs() < 1e-6);
             }
         }
     }

@@ -13,10 +13,13 @@ mod tree;
 
 use crate::motion::database::PADDED;
 use crate::motion::features::{FEATURE, POSE, TRAJECTORY};
+use crate::store::{Arrays, Format, StoreError};
 use axes::Axes;
 use multiversion::multiversion;
-use poses::{Poses, Row};
+use poses::{Poses, Row, Shape};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
 use tree::{Boxes, LANES, Lanes, Tree};
 
 /// Queries a task of the thread pool answers.
@@ -33,6 +36,27 @@ pub struct Index {
     longest: f32,
 }
 
+const FORMAT: Format = Format {
+    kind: "index",
+    version: 1,
+};
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    /// Of the database.
+    fingerprint: u32,
+    shape: Shape,
+    /// Codes of all groups, without padding.
+    groups: usize,
+}
+
+/// Files hold whole words.
+fn padded(bytes: &[u8]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    bytes
+}
+
 /// The nearest row and its squared distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
@@ -46,13 +70,65 @@ impl Index {
     pub fn build(frames: &[[f32; PADDED]], candidates: &[u32], memory: usize) -> Self {
         let rows: Vec<_> = candidates.iter().map(|&at| frames[at as usize]).collect();
         let axes = Axes::of(&rows);
-        let tree = Tree::of(&rows, &axes);
+        let tree = Tree::of(&rows, &axes, None);
+        let poses = Poses::of(frames, &tree, memory);
+        Self::join(&rows, axes, tree, poses)
+    }
+
+    fn join(rows: &[[f32; PADDED]], axes: Axes, tree: Tree, poses: Poses) -> Self {
         Index {
-            poses: Poses::of(frames, &tree, memory),
             longest: rows.iter().map(length).fold(0.0, f32::max),
-            tree,
             axes,
+            tree,
+            poses,
         }
+    }
+
+    /// Writes what is slow to find: the order of the rows and the table of poses.
+    pub fn save(&self, path: &Path, fingerprint: u32) -> Result<(), StoreError> {
+        let shape = self.poses.shape;
+        let mut arrays = Arrays::default();
+        arrays.put("order", &self.tree.order());
+        arrays.put("by_leaf", &self.poses.by_leaf);
+        arrays.put("by_group", &padded(&self.poses.by_group));
+        let groups = self.poses.by_group.len();
+        let header = Header {
+            fingerprint,
+            shape,
+            groups,
+        };
+        crate::store::save(path, FORMAT, &header, &arrays)
+    }
+
+    /// Reads a file written by [`Index::save`]; `None` if there is none, or none of this database
+    /// (`fingerprint`) in this form: then it must be built.
+    pub fn load(
+        path: &Path,
+        fingerprint: u32,
+        frames: &[[f32; PADDED]],
+        candidates: &[u32],
+    ) -> Option<Self> {
+        let (header, mut arrays) = crate::store::load::<Header>(path, FORMAT).ok()?;
+        let order: Vec<u32> = arrays.take("order")?;
+        let mut sorted = order.clone();
+        sorted.sort_unstable();
+        let whole = sorted.iter().copied().eq(0..candidates.len() as u32);
+        let mut by_group: Vec<u8> = arrays.take("by_group")?;
+        by_group.truncate(header.groups);
+        let poses = Poses {
+            shape: header.shape,
+            by_group,
+            by_leaf: arrays.take("by_leaf")?,
+        };
+        if header.fingerprint != fingerprint || !whole {
+            return None;
+        }
+        let rows: Vec<_> = candidates.iter().map(|&at| frames[at as usize]).collect();
+        let axes = Axes::of(&rows);
+        let tree = Tree::of(&rows, &axes, Some(order));
+        poses
+            .fits(frames.len(), tree.inner.len())
+            .then(|| Self::join(&rows, axes, tree, poses))
     }
 
     /// Bytes of memory held.
@@ -196,10 +272,9 @@ fn visit(tree: &Tree, group: usize, asked: &Asked, best: &mut Best) {
 #[inline(always)]
 fn bounds(boxes: &Boxes, asked: &[f32; TRAJECTORY], poses: [f32; LANES]) -> [f32; LANES] {
     let mut sum = poses;
-    for axis in 0..TRAJECTORY {
-        let (lows, highs) = (&boxes.low[axis], &boxes.high[axis]);
+    for ((lows, highs), &asked) in boxes.low.iter().zip(&boxes.high).zip(asked) {
         for ((sum, &low), &high) in sum.iter_mut().zip(lows).zip(highs) {
-            let (below, above) = (low - asked[axis], asked[axis] - high);
+            let (below, above) = (low - asked, asked - high);
             let outside = if below > above { below } else { above };
             let outside = if outside > 0.0 { outside } else { 0.0 };
             *sum = outside.mul_add(outside, *sum);

@@ -9,15 +9,22 @@ use crate::motion::database::PADDED;
 use crate::motion::features::POSE;
 use multiversion::multiversion;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 pub struct Poses {
+    pub shape: Shape,
+    /// `[blocks][groups]`
+    pub by_group: Vec<u8>,
+    /// `[blocks][groups][LANES]`; empty where memory was short.
+    pub by_leaf: Vec<[u8; LANES]>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shape {
     /// Frames a block.
     block: usize,
+    blocks: usize,
     groups: usize,
-    /// `[blocks][groups]`
-    by_group: Vec<u8>,
-    /// `[blocks][groups][LANES]`; empty where memory was short.
-    by_leaf: Vec<[u8; LANES]>,
     /// Distance a step of a code.
     step: f32,
 }
@@ -44,26 +51,23 @@ impl Poses {
             },
         };
         let blocks = frames.len().div_ceil(block);
+        let step = step(frames);
         let mut poses = Poses {
-            block,
-            groups,
+            shape: Shape {
+                block,
+                blocks,
+                groups,
+                step,
+            },
             by_group: vec![0; blocks * groups],
             by_leaf: vec![[0; LANES]; blocks * groups * lanes / LANES],
-            step: step(frames),
         };
-        let (step, by_leaf) = (poses.step, !poses.by_leaf.is_empty());
-        let mut none = vec![];
-        let leaves: Vec<&mut [[u8; LANES]]> = match by_leaf {
-            true => poses.by_leaf.chunks_mut(groups).collect(),
-            false => {
-                none.resize_with(blocks, || &mut [][..]);
-                none
-            }
-        };
+        let mut by_leaf: Vec<&mut [[u8; LANES]]> = poses.by_leaf.chunks_mut(groups).collect();
+        by_leaf.resize_with(blocks, || &mut []);
         frames
             .par_chunks(block)
             .zip(poses.by_group.par_chunks_mut(groups))
-            .zip(leaves)
+            .zip(by_leaf)
             .for_each(|((frames, by_group), by_leaf)| {
                 for (group, least) in by_group.iter_mut().enumerate() {
                     let leaves = &tree.leaves[group * LANES..][..LANES];
@@ -77,6 +81,16 @@ impl Poses {
         poses
     }
 
+    /// Whether these numbers can be of so many frames and groups.
+    pub fn fits(&self, frames: usize, groups: usize) -> bool {
+        let Shape { block, blocks, .. } = self.shape;
+        block > 0
+            && blocks == frames.div_ceil(block)
+            && groups == self.shape.groups
+            && self.by_group.len() == blocks * groups
+            && (self.by_leaf.is_empty() || self.by_leaf.len() == blocks * groups)
+    }
+
     pub fn bytes(&self) -> usize {
         self.by_group.len() + self.by_leaf.len() * LANES
     }
@@ -84,11 +98,17 @@ impl Poses {
     /// What is known of one frame's pose.
     #[inline(always)]
     pub fn row(&self, frame: u32) -> Row<'_> {
-        let first = frame as usize / self.block * self.groups;
+        let Shape {
+            block,
+            groups,
+            step,
+            ..
+        } = self.shape;
+        let first = frame as usize / block * groups;
         Row {
-            by_group: &self.by_group[first..][..self.groups],
-            by_leaf: self.by_leaf.get(first..first + self.groups),
-            step: self.step,
+            by_group: &self.by_group[first..][..groups],
+            by_leaf: self.by_leaf.get(first..first + groups),
+            step,
         }
     }
 }
@@ -104,7 +124,7 @@ pub struct Row<'a> {
 impl Row<'_> {
     /// To sixteen groups, from a multiple of sixteen on; 0 for those past the end.
     #[inline(always)]
-    pub fn to_groups(&self, first: usize) -> [f32; LANES] {
+    pub fn to_groups(self, first: usize) -> [f32; LANES] {
         let codes = &self.by_group[first..];
         let mut padded = [0; LANES];
         match codes.first_chunk() {
@@ -116,7 +136,7 @@ impl Row<'_> {
 
     /// To the leaves of a group.
     #[inline(always)]
-    pub fn to_leaves(&self, group: usize) -> [f32; LANES] {
+    pub fn to_leaves(self, group: usize) -> [f32; LANES] {
         match self.by_leaf {
             Some(codes) => self.squares(codes[group]),
             None => self.squares([self.by_group[group]; LANES]),
@@ -124,7 +144,7 @@ impl Row<'_> {
     }
 
     #[inline(always)]
-    fn squares(&self, codes: [u8; LANES]) -> [f32; LANES] {
+    fn squares(self, codes: [u8; LANES]) -> [f32; LANES] {
         codes.map(|code| {
             let distance = f32::from(code) * self.step;
             distance * distance
@@ -157,9 +177,9 @@ fn codes(frames: &[[f32; PADDED]], leaves: &[Lanes], step: f32) -> [u8; LANES] {
         let mut least = [f32::INFINITY; LANES];
         for frame in frames {
             let mut sum = [0.0f32; LANES];
-            for d in 0..POSE {
-                for (sum, &row) in sum.iter_mut().zip(&leaf[d]) {
-                    let difference = row - frame[d];
+            for (&value, lanes) in frame.iter().zip(&leaf[..POSE]) {
+                for (sum, &row) in sum.iter_mut().zip(lanes) {
+                    let difference = row - value;
                     *sum = difference.mul_add(difference, *sum);
                 }
             }

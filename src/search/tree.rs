@@ -43,8 +43,9 @@ type Corner = [[f32; TRAJECTORY]; 2];
 const NOTHING: Corner = [[f32::INFINITY; TRAJECTORY], [f32::NEG_INFINITY; TRAJECTORY]];
 
 impl Tree {
-    /// Of `rows`, of which there must be at least one.
-    pub fn of(rows: &[[f32; PADDED]], axes: &Axes) -> Self {
+    /// Of `rows`, of which there must be at least one; `order` is that of an earlier tree of the same
+    /// rows, to save the sorting.
+    pub fn of(rows: &[[f32; PADDED]], axes: &Axes, order: Option<Vec<u32>>) -> Self {
         let key = |row: &[f32; PADDED]| -> Key {
             let turned = axes.turn(row);
             std::array::from_fn(|d| match d {
@@ -53,8 +54,11 @@ impl Tree {
             })
         };
         let keys: Vec<Key> = rows.par_iter().map(key).collect();
-        let mut order: Vec<u32> = (0..rows.len() as u32).collect();
-        sort(&keys, &mut order);
+        let order = order.unwrap_or_else(|| {
+            let mut order: Vec<u32> = (0..rows.len() as u32).collect();
+            sort(&keys, &mut order);
+            order
+        });
         let groups = rows.len().div_ceil(GROUP);
         let mut leaves = vec![[[f32::INFINITY; LANES]; FEATURE]; groups * LANES];
         let mut ids = vec![[u32::MAX; LANES]; groups * LANES];
@@ -79,6 +83,12 @@ impl Tree {
             inner: corners.chunks(LANES).map(pack).collect(),
             outer: groups.chunks(LANES).map(pack).collect(),
         }
+    }
+
+    /// All rows, leaf by leaf.
+    pub fn order(&self) -> Vec<u32> {
+        let ids = self.ids.iter().flatten().copied();
+        ids.filter(|&id| id != u32::MAX).collect()
     }
 
     pub fn bytes(&self) -> usize {

@@ -48,6 +48,27 @@ fn synthetic_motion_can_be_looked_at() {
     assert!(embedded.err.contains("synthetic motion"), "{embedded:?}");
 }
 
+/// The index beside a database saves time and changes nothing.
+#[test]
+fn a_database_trains_alike_whatever_became_of_its_index() {
+    let place = Place::new();
+    place.done("data synth --minutes 1 --out a.footwork");
+    let index = place.path("a.footwork.index");
+    let train = |run: &str| {
+        let out = format!("--steps 8192 --device cpu --data a.footwork --out {run}");
+        place.done(&format!("train plane {out}"));
+        place.json(&format!("{run}/summary.json"))["success"].clone()
+    };
+    let with = train("with");
+    std::fs::write(&index, "no index").unwrap();
+    assert_eq!(train("damaged"), with);
+    std::fs::remove_file(&index).unwrap();
+    assert_eq!(train("without"), with);
+    place.done("data synth --minutes 2 --out b.footwork");
+    std::fs::rename(place.path("b.footwork.index"), &index).unwrap();
+    assert_eq!(train("of-another"), with);
+}
+
 #[test]
 fn the_seed_decides_what_is_performed() {
     let place = Place::new();

@@ -321,6 +321,42 @@ fn a_query_that_is_no_number_finds_a_row() {
     }
 }
 
+/// What was saved answers as what was built; what is not of this database is not used.
+#[test]
+fn an_index_is_kept_in_a_file() {
+    let rows = &SYNTHETIC.rows[..5000];
+    let queries: Rows = (0..200).map(|i| KINDS[1].queries[i]).collect();
+    let frames = [rows, &queries].concat();
+    let candidates: Vec<u32> = (0..rows.len() as u32).collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("index");
+    for memory in [MEMORY, 0] {
+        let built = Index::build(&frames, &candidates, memory);
+        built.save(&path, 7).expect("a file");
+        let load =
+            |fingerprint, frames, candidates| Index::load(&path, fingerprint, frames, candidates);
+        let index = load(7, &frames, &candidates).expect("an index");
+        assert_eq!(index.bytes(), built.bytes());
+        let kept = Indexed {
+            index,
+            rows,
+            queries: &queries,
+        };
+        same(&kept, &by_twin(rows, &queries));
+        assert!(
+            load(8, &frames, &candidates).is_none(),
+            "another database's"
+        );
+        assert!(load(7, &frames[..4000], &candidates[..3000]).is_none());
+    }
+    let mut bytes = std::fs::read(&path).expect("the file");
+    bytes[5000] ^= 1;
+    std::fs::write(&path, bytes).expect("a damaged file");
+    assert!(Index::load(&path, 7, &frames, &candidates).is_none());
+    std::fs::remove_file(&path).expect("no file");
+    assert!(Index::load(&path, 7, &frames, &candidates).is_none());
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
