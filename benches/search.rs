@@ -54,14 +54,14 @@ fn search(criterion: &mut Criterion) {
     for (name, noise) in [("calm", 0.1), ("noisy", 1.0), ("wild", 2.6)] {
         let (frames, queries) = queries(&database, noise, 4096);
         group.throughput(Throughput::Elements(queries.len() as u64));
-        group.bench_function(format!("pruned, one core, {name}"), |b| {
+        group.bench_function(format!("indexed, one core, {name}"), |b| {
             b.iter(|| {
                 let each = frames.iter().zip(&queries);
                 each.map(|(&frame, query)| u64::from(index.nearest(frame, query).index))
                     .sum::<u64>()
             });
         });
-        group.bench_function(format!("pruned, all cores, {name}"), |b| {
+        group.bench_function(format!("indexed, all cores, {name}"), |b| {
             b.iter_batched_ref(
                 || vec![0; queries.len()],
                 |found| index.nearest_all(&frames, black_box(&queries), found),

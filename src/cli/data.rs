@@ -137,7 +137,9 @@ impl Synth {
 
 fn save(database: &Database, path: &Path) -> Result<()> {
     database.save(path)?;
-    database.save_index(path)?;
+    database.save_index(path).context(
+        "the database was written, the search's index beside it was not, and every training will build it anew",
+    )?;
     println!(
         "{}: {} clips, {:.1} minutes, {} candidates, fingerprint {:08x}; beside it the search's index, {:.1} MB",
         path.display(),

@@ -46,8 +46,6 @@ struct Header {
     /// Of the database.
     fingerprint: u32,
     shape: Shape,
-    /// Codes of all groups, without padding.
-    groups: usize,
 }
 
 /// Files hold whole words.
@@ -86,16 +84,13 @@ impl Index {
 
     /// Writes what is slow to find: the order of the rows and the table of poses.
     pub fn save(&self, path: &Path, fingerprint: u32) -> Result<(), StoreError> {
-        let shape = self.poses.shape;
         let mut arrays = Arrays::default();
         arrays.put("order", &self.tree.order());
         arrays.put("by_leaf", &self.poses.by_leaf);
         arrays.put("by_group", &padded(&self.poses.by_group));
-        let groups = self.poses.by_group.len();
         let header = Header {
             fingerprint,
-            shape,
-            groups,
+            shape: self.poses.shape,
         };
         crate::store::save(path, FORMAT, &header, &arrays)
     }
@@ -113,22 +108,20 @@ impl Index {
         let mut sorted = order.clone();
         sorted.sort_unstable();
         let whole = sorted.iter().copied().eq(0..candidates.len() as u32);
-        let mut by_group: Vec<u8> = arrays.take("by_group")?;
-        by_group.truncate(header.groups);
-        let poses = Poses {
-            shape: header.shape,
-            by_group,
-            by_leaf: arrays.take("by_leaf")?,
-        };
         if header.fingerprint != fingerprint || !whole {
             return None;
         }
         let rows: Vec<_> = candidates.iter().map(|&at| frames[at as usize]).collect();
         let axes = Axes::of(&rows);
         let tree = Tree::of(&rows, &axes, Some(order));
-        poses
-            .fits(frames.len(), tree.inner.len())
-            .then(|| Self::join(&rows, axes, tree, poses))
+        let poses = Poses::restored(
+            header.shape,
+            arrays.take("by_group")?,
+            arrays.take("by_leaf")?,
+            frames.len(),
+            tree.inner.len(),
+        )?;
+        Some(Self::join(&rows, axes, tree, poses))
     }
 
     /// Bytes of memory held.

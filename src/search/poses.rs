@@ -23,7 +23,6 @@ pub struct Poses {
 pub struct Shape {
     /// Frames a block.
     block: usize,
-    blocks: usize,
     groups: usize,
     /// Distance a step of a code.
     step: f32,
@@ -41,21 +40,19 @@ impl Poses {
     /// needs more, in that.
     pub fn of(frames: &[[f32; PADDED]], tree: &Tree, memory: usize) -> Self {
         let groups = tree.inner.len();
-        let fits =
-            |&block: &usize, codes: usize| frames.len().div_ceil(block) * groups * codes <= memory;
-        let (block, lanes) = match BLOCKS.iter().find(|block| fits(block, LANES + 1)) {
-            Some(&block) if block <= BY_LEAF => (block, LANES),
-            _ => match BLOCKS.iter().find(|block| fits(block, 1)) {
-                Some(&block) => (block, 0),
-                None => (BLOCKS[BLOCKS.len() - 1], 0),
-            },
+        let find = |codes: usize| {
+            let fits = |&block: &usize| frames.len().div_ceil(block) * groups * codes <= memory;
+            BLOCKS.into_iter().find(fits)
+        };
+        let (block, lanes) = match find(LANES + 1) {
+            Some(block) if block <= BY_LEAF => (block, LANES),
+            _ => (find(1).unwrap_or(BLOCKS[BLOCKS.len() - 1]), 0),
         };
         let blocks = frames.len().div_ceil(block);
         let step = step(frames);
         let mut poses = Poses {
             shape: Shape {
                 block,
-                blocks,
                 groups,
                 step,
             },
@@ -81,14 +78,27 @@ impl Poses {
         poses
     }
 
-    /// Whether these numbers can be of so many frames and groups.
-    pub fn fits(&self, frames: usize, groups: usize) -> bool {
-        let Shape { block, blocks, .. } = self.shape;
-        block > 0
-            && blocks == frames.div_ceil(block)
-            && groups == self.shape.groups
-            && self.by_group.len() == blocks * groups
-            && (self.by_leaf.is_empty() || self.by_leaf.len() == blocks * groups)
+    /// Of a file, where the codes of the groups are padded to whole words; `None` if these
+    /// numbers cannot be of so many frames and groups.
+    pub fn restored(
+        shape: Shape,
+        mut by_group: Vec<u8>,
+        by_leaf: Vec<[u8; LANES]>,
+        frames: usize,
+        groups: usize,
+    ) -> Option<Self> {
+        if shape.block == 0 || shape.groups != groups {
+            return None;
+        }
+        let codes = frames.div_ceil(shape.block) * groups;
+        let fits = by_group.len() == codes.next_multiple_of(4)
+            && (by_leaf.is_empty() || by_leaf.len() == codes);
+        by_group.truncate(codes);
+        fits.then_some(Poses {
+            shape,
+            by_group,
+            by_leaf,
+        })
     }
 
     pub fn bytes(&self) -> usize {
@@ -102,7 +112,6 @@ impl Poses {
             block,
             groups,
             step,
-            ..
         } = self.shape;
         let first = frame as usize / block * groups;
         Row {
@@ -152,7 +161,7 @@ impl Row<'_> {
     }
 }
 
-/// Codes reach five times the deviation of all poses: beyond, they need not tell how far.
+/// Codes reach two and a half times the deviation of all poses: beyond, they need not tell how far.
 fn step(frames: &[[f32; PADDED]]) -> f32 {
     let n = frames.len() as f64;
     let variance: f64 = (0..POSE)

@@ -55,15 +55,20 @@ pub const READINGS: [Variant; 6] = [
     Variant {
         name: "arrival-continues",
         change: |task| {
-            *task = Obstacles::PRINTED;
-            task.arrival = Arrival::Continue;
+            *task = Obstacles {
+                arrival: Arrival::Continue,
+                ..Obstacles::PRINTED
+            }
         },
     },
     Variant {
         name: "and-targets-clear",
         change: |task| {
-            *task = Obstacles::PRINTED;
-            (task.arrival, task.target_clear) = (Arrival::Continue, true);
+            *task = Obstacles {
+                arrival: Arrival::Continue,
+                target_clear: true,
+                ..Obstacles::PRINTED
+            }
         },
     },
     Variant {
@@ -73,8 +78,10 @@ pub const READINGS: [Variant; 6] = [
     Variant {
         name: "that-but-terminal",
         change: |task| {
-            *task = Obstacles::PAPER;
-            task.arrival = Arrival::Terminal;
+            *task = Obstacles {
+                arrival: Arrival::Terminal,
+                ..Obstacles::PAPER
+            }
         },
     },
     Variant {
