@@ -3,16 +3,18 @@
 //!
 //! A step of the world, in order:
 //! [`observe`] what the policy sees, [`act`] draw its action, [`hits`] count what it asks for in
-//! obstacles, [`query`] put the question to the database, [`search_wide`] or [`search_tile`] and
-//! [`search_exact`] find the nearest candidate, [`collide`] see what is in its way, [`wander`] move
-//! the obstacles, [`mod@step`] play it and reward, [`sense`] map the obstacles; where an episode
-//! ended [`scatter`] draws new obstacles and [`reset`] starts another. After a rollout [`gae`]
-//! judges the actions and [`tally`] sums up the episodes.
+//! obstacles, [`query`] put the question to the database, find the nearest candidate (by the index:
+//! [`search_near`], [`search_reach`], [`search_leaves`], [`search_pick`]; among all rows:
+//! [`search_wide`] or [`search_tile`], and [`search_exact`]), [`collide`] see what is in its way,
+//! [`wander`] move the obstacles, [`mod@step`] play it and reward, [`sense`] map the obstacles; where
+//! an episode ended [`scatter`] draws new obstacles and [`reset`] starts another. After a rollout
+//! [`gae`] judges the actions and [`tally`] sums up the episodes.
 
 pub mod act;
 pub mod collide;
 pub mod gae;
 pub mod hits;
+pub mod index;
 pub mod layout;
 pub mod observe;
 pub mod obstacles;
@@ -21,6 +23,10 @@ pub mod reset;
 pub mod rng;
 pub mod scatter;
 pub mod search_exact;
+pub mod search_leaves;
+pub mod search_near;
+pub mod search_pick;
+pub mod search_reach;
 pub mod search_tile;
 pub mod search_wide;
 pub mod sense;

@@ -15,6 +15,11 @@ impl Axes {
         Axes(order.map(|axis| vectors.map(|row| row[axis])))
     }
 
+    /// Rounded, one axis a row.
+    pub fn rows(&self) -> [[f32; TRAJECTORY]; TRAJECTORY] {
+        self.0.map(|axis| axis.map(|value| value as f32))
+    }
+
     /// A row's trajectory along the axes.
     pub fn turn(&self, row: &[f32; PADDED]) -> [f32; TRAJECTORY] {
         let trajectory: [f64; TRAJECTORY] = std::array::from_fn(|i| f64::from(row[POSE + i]));

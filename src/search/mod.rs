@@ -8,6 +8,7 @@
 //! bit, that of [`crate::kernels::search_exact::twin`], the lowest index of equals included.
 
 mod axes;
+mod packed;
 mod poses;
 mod tree;
 
@@ -16,6 +17,7 @@ use crate::motion::features::{FEATURE, POSE, TRAJECTORY};
 use crate::store::{Arrays, Format, StoreError};
 use axes::Axes;
 use multiversion::multiversion;
+pub use packed::Packed;
 use poses::{Poses, Row, Shape};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -24,8 +26,8 @@ use tree::{Boxes, LANES, Lanes, Tree};
 
 /// Queries a task of the thread pool answers.
 const TASK: usize = 16;
-/// Bytes of the table of poses unless asked otherwise.
-pub const MEMORY: usize = 256 << 20;
+/// Bytes of the table of poses unless asked otherwise: WebGPU's default limit of a binding.
+pub const MEMORY: usize = 128 << 20;
 
 /// The rows, sorted for pruning, and what is known of their poses.
 pub struct Index {
@@ -38,7 +40,7 @@ pub struct Index {
 
 const FORMAT: Format = Format {
     kind: "index",
-    version: 1,
+    version: 2,
 };
 
 #[derive(Serialize, Deserialize)]

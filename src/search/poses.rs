@@ -22,10 +22,10 @@ pub struct Poses {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shape {
     /// Frames a block.
-    block: usize,
+    pub block: usize,
     groups: usize,
     /// Distance a step of a code.
-    step: f32,
+    pub step: f32,
 }
 
 /// Frames a block, from the tightest on.

@@ -63,7 +63,7 @@ impl GpuWorld {
             drift: Buffer::zeroed(gpu, envs * AXES * count),
             maps: Buffer::zeroed(gpu, envs * MAPS * CELLS),
             queries: Buffer::zeroed(gpu, envs * PADDED),
-            search: Search::new(gpu, &database.rows(), envs),
+            search: Search::new(gpu, database, envs),
             reward: Buffer::zeroed(gpu, setup.horizon * envs),
             ended: Buffer::zeroed(gpu, setup.horizon * envs),
             last: Buffer::zeroed(gpu, rules.final_steps() * envs * width),
@@ -168,7 +168,7 @@ impl World for GpuWorld {
             &self.queries,
             &self.rules.query(),
         );
-        let matched = self.search.nearest(&self.gpu, &self.queries);
+        let matched = self.search.nearest(&self.gpu, &self.whole, &self.queries);
         if obstacles {
             collide::launch(
                 &self.gpu,

@@ -5,9 +5,11 @@
 //! [`gpu`] and [`cpu`] step a batch of worlds by the shaders or by their twins, behind the one trait
 //! [`World`].
 
+pub mod brute;
 pub mod cpu;
 pub mod curriculum;
 pub mod gpu;
+pub mod indexed;
 pub mod rules;
 pub mod search;
 pub mod task;

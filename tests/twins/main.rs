@@ -24,6 +24,7 @@ mod rng;
 mod scatter;
 mod search;
 mod search_exact;
+mod search_index;
 mod search_tile;
 mod search_wide;
 mod sense;

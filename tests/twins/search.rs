@@ -11,7 +11,8 @@ use footwork::motion::features::{FEATURE, POSE};
 use footwork::motion::normalise::Weights;
 use footwork::search::{Index, MEMORY};
 use footwork::train::data;
-use footwork::world::search::Search;
+use footwork::world::brute::Brute;
+use footwork::world::indexed::Indexed as IndexedOnGpu;
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
@@ -117,17 +118,29 @@ impl Kind {
     }
 }
 
-/// Both forms of the GPU's search: for software adapters and for real ones.
-fn forms() -> [(&'static str, Gpu); 2] {
-    let mut real = gpu();
-    real.software = false;
-    [("search_wide", gpu()), ("search_tile", real)]
+/// A form of the GPU's search.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Form {
+    /// For software adapters.
+    Index,
+    /// Among all rows, the kernels for software adapters.
+    Wide,
+    /// Among all rows, those for real ones.
+    Tile,
 }
 
-fn on_gpu(gpu: &Gpu, rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) -> Vec<u32> {
-    let search = Search::new(gpu, rows, queries.len());
-    let queries = Buffer::from_slice(gpu, queries.as_flattened());
-    search.nearest(gpu, &queries).read(gpu).expect("matches")
+const FORMS: [Form; 3] = [Form::Index, Form::Wide, Form::Tile];
+
+fn on_gpu(form: Form, rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) -> Vec<u32> {
+    let mut gpu = gpu();
+    gpu.software = form != Form::Tile;
+    let asked = Buffer::from_slice(&gpu, queries.as_flattened());
+    if form == Form::Index {
+        let indexed = Indexed::new(rows, queries, MEMORY);
+        return indexed.on_gpu(&gpu, &asked);
+    }
+    let search = Brute::new(&gpu, rows, queries.len());
+    search.nearest(&gpu, &asked).read(&gpu).expect("matches")
 }
 
 fn by_twin(rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) -> Vec<u32> {
@@ -163,8 +176,19 @@ impl<'a> Indexed<'a> {
         (self.rows.len() + query) as u32
     }
 
+    fn frames(&self) -> Vec<u32> {
+        (0..self.queries.len()).map(|q| self.frame(q)).collect()
+    }
+
+    fn on_gpu(&self, gpu: &Gpu, queries: &Buffer<f32>) -> Vec<u32> {
+        let search = IndexedOnGpu::new(gpu, &self.index, self.queries.len());
+        let shown = Buffer::from_slice(gpu, &self.frames());
+        let found = search.nearest(gpu, &shown, queries);
+        found.read(gpu).expect("matches")
+    }
+
     fn nearest_all(&self) -> Vec<u32> {
-        let frames: Vec<u32> = (0..self.queries.len()).map(|q| self.frame(q)).collect();
+        let frames = self.frames();
         let mut found = vec![u32::MAX; frames.len()];
         self.index.nearest_all(&frames, self.queries, &mut found);
         found
@@ -211,12 +235,26 @@ fn the_cpu_finds_what_the_oracle_finds() {
 }
 
 #[test]
-fn both_forms_of_the_gpu_find_what_the_oracle_finds() {
-    for (form, gpu) in forms() {
+fn all_forms_of_the_gpu_find_what_the_oracle_finds() {
+    for form in FORMS {
         for kind in &*KINDS {
-            let count = if gpu.software { ALL } else { BY_TILE };
-            kind.judge(form, &on_gpu(&gpu, &kind.data.rows, &kind.queries[..count]));
+            let count = if form == Form::Tile { BY_TILE } else { ALL };
+            let found = on_gpu(form, &kind.data.rows, &kind.queries[..count]);
+            kind.judge(&format!("{form:?}"), &found);
         }
+    }
+}
+
+/// However little memory the index has, the GPU finds what the CPU finds.
+#[test]
+fn the_gpu_finds_what_the_cpu_finds_with_little_memory() {
+    let kind = &KINDS[1];
+    let queries = &kind.queries[..1000];
+    let by_twin = on_cpu(&kind.data.rows, queries);
+    for memory in [1 << 20, 0] {
+        let indexed = Indexed::new(&kind.data.rows, queries, memory);
+        let asked = Buffer::from_slice(&gpu(), queries.as_flattened());
+        assert!(indexed.on_gpu(&gpu(), &asked) == by_twin);
     }
 }
 
@@ -244,14 +282,14 @@ fn finds_a_winner_in_the_first_and_in_the_last_row() {
         assert_eq!(best[1], count - 1);
         assert!(count == 1 || best[0] == 0);
         same_as_twin(&rows, &queries);
-        for (form, gpu) in forms() {
-            let found = on_gpu(&gpu, &rows, &queries);
+        for form in FORMS {
+            let found = on_gpu(form, &rows, &queries);
             assert_eq!(
                 found[..2],
                 [best[0] as u32, best[1] as u32],
-                "{form}, {count} rows"
+                "{form:?}, {count} rows"
             );
-            oracle.judge(form, &queries[2], found[2], best[2]);
+            oracle.judge(&format!("{form:?}"), &queries[2], found[2], best[2]);
         }
     }
 }
@@ -265,12 +303,9 @@ fn of_equal_rows_the_first_wins() {
         queries[2] = queries[2].map(|value| value * 1e5);
         queries[2][FEATURE] = 1.0;
         assert_eq!(on_cpu(&rows, &queries), [0; 3]);
-        for (form, gpu) in forms() {
-            assert_eq!(
-                on_gpu(&gpu, &rows, &queries),
-                [0; 3],
-                "{form}, {count} rows"
-            );
+        for form in FORMS {
+            let found = on_gpu(form, &rows, &queries);
+            assert_eq!(found, [0; 3], "{form:?}, {count} rows");
         }
     }
 }
@@ -293,10 +328,10 @@ fn finds_the_nearest_where_scores_cancel() {
     let oracle = Oracle::new(&rows);
     let best = oracle.nearest_all(&queries);
     same_as_twin(&rows, &queries);
-    for (form, gpu) in forms() {
-        let found = on_gpu(&gpu, &rows, &queries);
+    for form in FORMS {
+        let found = on_gpu(form, &rows, &queries);
         for ((query, found), &best) in queries.iter().zip(found).zip(&best) {
-            oracle.judge(form, query, found, best);
+            oracle.judge(&format!("{form:?}"), query, found, best);
         }
     }
 }
@@ -308,7 +343,8 @@ fn finds_the_nearest_for_tens_of_thousands_of_queries_at_once() {
     let rows = &SYNTHETIC.rows;
     let queries = Draw::new(11).rows(35_000, 1.0);
     let by_cpu = on_cpu(rows, &queries);
-    assert!(on_gpu(&gpu(), rows, &queries) == by_cpu);
+    assert!(on_gpu(Form::Index, rows, &queries) == by_cpu);
+    assert!(on_gpu(Form::Wide, rows, &queries) == by_cpu);
 }
 
 /// A diverged policy asks for what is not a number: the answer must still be a row.
@@ -318,6 +354,8 @@ fn a_query_that_is_no_number_finds_a_row() {
     for bad in [f32::NAN, f32::INFINITY, f32::MAX] {
         let queries = [[bad; PADDED], rows[7]];
         assert_eq!(on_cpu(&rows, &queries), [0, 7], "{bad}");
+        let found = on_gpu(Form::Index, &rows, &queries);
+        assert!(found[0] < 300 && found[1] == 7, "{bad}");
     }
 }
 

@@ -1,0 +1,50 @@
+//! What the twins of the search by the index share. Shader: `shaders/shared/index.wgsl`.
+
+use crate::gpu::shader::search_near::constants;
+use crate::motion::database::PADDED;
+use crate::motion::features::{FEATURE, TRAJECTORY};
+
+/// Rows a leaf.
+pub const LEAF: usize = constants::LEAF as usize;
+/// Leaves a group.
+pub const GROUP: usize = constants::GROUP as usize;
+/// Numbers kept of a query: along the twelve principal axes, and its slack.
+pub const ASKED: usize = constants::ASKED as usize;
+/// Invocations that compare a query's rows.
+pub const LANES: usize = constants::LANES as usize;
+
+/// Lower and upper corner of a box (0: the first group's) behind the axes.
+pub fn corners(boxes: &[[f32; TRAJECTORY]], at: usize) -> &[[f32; TRAJECTORY]] {
+    &boxes[TRAJECTORY + 2 * at..][..2]
+}
+
+/// Squared distance of a trajectory along the axes to a box, on top of what is known of the pose.
+pub fn bound(corners: &[[f32; TRAJECTORY]], asked: &[f32; TRAJECTORY], pose: f32) -> f32 {
+    let each = corners[0].iter().zip(&corners[1]).zip(asked);
+    each.fold(pose, |sum, ((low, high), asked)| {
+        let outside = (low - asked).max(asked - high).max(0.0);
+        outside.mul_add(outside, sum)
+    })
+}
+
+/// Square of a distance given as a byte.
+pub fn square(code: u8, step: f32) -> f32 {
+    let distance = f32::from(code) * step;
+    distance * distance
+}
+
+/// What lies beyond this bound is neither nearer nor as near as something at this squared distance.
+pub fn limit(squared: f32, slack: f32) -> f32 {
+    match squared >= 1e37 {
+        true => f32::MAX,
+        false => (squared.sqrt() * 1.00001 + slack).powi(2),
+    }
+}
+
+/// Replaces the best by a row if that is nearer, or as near and lower.
+pub fn offer(row: &[f32; PADDED], squared: f32, distance: &mut f32, candidate: &mut u32) {
+    let found = row[FEATURE] as u32;
+    if squared < *distance || (squared == *distance && found < *candidate) {
+        (*distance, *candidate) = (squared, found);
+    }
+}
