@@ -19,13 +19,15 @@
 //! - [`motion`]: recordings, the procedural performer, features, the database;
 //! - [`gpu`]: devices, buffers, the one launch, the one bridge to burn's tensors;
 //! - [`kernels`]: one file a shader: parameters, launch, twin;
-//! - [`search`]: the CPU's exact search;
+//! - [`search`]: the exact search's index, and the search on the CPU;
 //! - [`world`]: a batch of worlds, by shaders or by twins;
 //! - [`ppo`]: policy, rollout, update;
 //! - [`train`]: configuration, run folder, checkpoints, the loop, evaluation;
+//! - [`benchmark`]: what each device makes of each stage;
 //! - [`report`]: pictures, TensorBoard events, tables;
 //! - [`store`] and [`tensors`]: files and tensors as plain arrays.
 
+pub mod benchmark;
 pub mod gpu;
 pub mod kernels;
 pub mod motion;

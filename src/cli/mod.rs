@@ -1,6 +1,7 @@
 //! One file a subcommand.
 
 mod ablate;
+mod bench;
 mod data;
 mod eval;
 mod train;
@@ -28,6 +29,8 @@ enum Command {
     Ablate(ablate::Ablate),
     /// Judge a trained policy on a fixed set of episodes
     Eval(eval::Eval),
+    /// Measure what each device makes of each stage
+    Bench(bench::Bench),
     /// Import, synthesise and inspect motion
     #[command(subcommand)]
     Data(data::Data),
@@ -43,6 +46,7 @@ pub fn run() -> Result<()> {
         Command::Train(task) => task.run(),
         Command::Ablate(ablate) => ablate.run(),
         Command::Eval(eval) => eval.run(),
+        Command::Bench(bench) => bench.run(),
         Command::Data(data) => data.run(),
     }
 }

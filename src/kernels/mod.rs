@@ -8,9 +8,12 @@
 //! [`search_wide`] or [`search_tile`], and [`search_exact`]), [`collide`] see what is in its way,
 //! [`wander`] move the obstacles, [`mod@step`] play it and reward, [`sense`] map the obstacles; where
 //! an episode ended [`scatter`] draws new obstacles and [`reset`] starts another. After a rollout
-//! [`gae`] judges the actions and [`tally`] sums up the episodes.
+//! [`gae`] judges the actions and [`tally`] sums up the episodes. [`bandwidth`] and [`arithmetic`] measure
+//! what a device could do.
 
 pub mod act;
+pub mod arithmetic;
+pub mod bandwidth;
 pub mod collide;
 pub mod gae;
 pub mod hits;

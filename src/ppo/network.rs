@@ -135,6 +135,15 @@ impl Shape {
         })
     }
 
+    /// Multiplications and additions of the actor for one observation.
+    pub fn actor_operations(&self) -> usize {
+        let net = &self.actor;
+        let places = |layer: &Layer| layer.outputs().iter().product::<usize>() / layer.filters();
+        let eyes = net.eyes.iter().map(|layer| layer.weights() * places(layer));
+        let dense = net.sight.iter().chain(&net.hidden);
+        2 * (eyes.sum::<usize>() + dense.map(|at| at.inputs * at.outputs).sum::<usize>())
+    }
+
     /// Length of the flat vector.
     pub fn parameters(&self) -> usize {
         self.log_std + TRAJECTORY

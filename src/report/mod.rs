@@ -3,7 +3,7 @@
 //! The pictures share one look. [`picture`] writes a PNG whole or not at all,
 //! [`canvas`] draws smooth lines and text into one, [`chart`] adds the colours and
 //! the axes, [`ground`] the view from above, and each of [`learning_curve`],
-//! [`ablation`], [`trajectories`], [`obstacle_walks`] and [`coverage`] is one figure.
+//! [`ablation`], [`trajectories`], [`obstacle_walks`], [`coverage`] and [`scaling`] is one figure.
 //! None of them needs a display, a window system or an installed font.
 //!
 //! [`events`] writes what TensorBoard reads, and [`table`] what a terminal shows.
@@ -18,6 +18,7 @@ pub mod ground;
 pub mod learning_curve;
 pub mod obstacle_walks;
 pub mod picture;
+pub mod scaling;
 pub mod table;
 pub mod trajectories;
 

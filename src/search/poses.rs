@@ -59,6 +59,8 @@ impl Poses {
             by_group: vec![0; blocks * groups],
             by_leaf: vec![[0; LANES]; blocks * groups * lanes / LANES],
         };
+        let boxes: Vec<Around> = tree.leaves.par_iter().map(Around::leaf).collect();
+        let fine = lanes > 0;
         let mut by_leaf: Vec<&mut [[u8; LANES]]> = poses.by_leaf.chunks_mut(groups).collect();
         by_leaf.resize_with(blocks, || &mut []);
         frames
@@ -66,9 +68,11 @@ impl Poses {
             .zip(poses.by_group.par_chunks_mut(groups))
             .zip(by_leaf)
             .for_each(|((frames, by_group), by_leaf)| {
+                let around = Around::frames(frames);
                 for (group, least) in by_group.iter_mut().enumerate() {
                     let leaves = &tree.leaves[group * LANES..][..LANES];
-                    let codes = codes(frames, leaves, step);
+                    let apart = around.apart(&boxes[group * LANES..][..LANES]);
+                    let codes = codes(frames, leaves, &apart, step, fine);
                     *least = codes.into_iter().fold(u8::MAX, u8::min);
                     if let Some(kept) = by_leaf.get_mut(group) {
                         *kept = codes;
@@ -175,18 +179,98 @@ fn step(frames: &[[f32; PADDED]]) -> f32 {
     (variance.sqrt() as f32 * (2.5 / 255.0)).max(1e-20)
 }
 
+/// The box around some poses.
+struct Around {
+    low: [f32; POSE],
+    high: [f32; POSE],
+}
+
+impl Around {
+    fn nothing() -> Self {
+        Around {
+            low: [f32::INFINITY; POSE],
+            high: [f32::NEG_INFINITY; POSE],
+        }
+    }
+
+    fn add(&mut self, dimension: usize, value: f32) {
+        // Lanes without a row hold infinity.
+        if value < f32::INFINITY {
+            self.low[dimension] = self.low[dimension].min(value);
+            self.high[dimension] = self.high[dimension].max(value);
+        }
+    }
+
+    fn leaf(leaf: &Lanes) -> Self {
+        let mut around = Self::nothing();
+        for (dimension, lanes) in leaf.iter().enumerate().take(POSE) {
+            lanes.iter().for_each(|&value| around.add(dimension, value));
+        }
+        around
+    }
+
+    fn frames(frames: &[[f32; PADDED]]) -> Self {
+        let mut around = Self::nothing();
+        for frame in frames {
+            let pose = frame.iter().enumerate().take(POSE);
+            pose.for_each(|(dimension, &value)| around.add(dimension, value));
+        }
+        around
+    }
+
+    /// Squared distances to the boxes around sixteen leaves: no pose of the one is nearer to a pose
+    /// of the other.
+    fn apart(&self, leaves: &[Around]) -> [f32; LANES] {
+        let mut apart = [0.0; LANES];
+        for (apart, leaf) in apart.iter_mut().zip(leaves) {
+            for dimension in 0..POSE {
+                let below = leaf.low[dimension] - self.high[dimension];
+                let above = self.low[dimension] - leaf.high[dimension];
+                let outside = below.max(above).max(0.0);
+                *apart += outside * outside;
+            }
+        }
+        apart
+    }
+}
+
+/// Of every leaf of a group; if not `fine`, only the least of them has a meaning. Leaves too far
+/// `apart` to matter are not looked into: an error of rounding there is far less than [`DOWN`] allows.
 #[multiversion(targets(
     "x86_64+avx512f+avx512vl+avx512dq+avx512bw+fma",
     "x86_64+avx2+fma",
     "aarch64+neon"
 ))]
-fn codes(frames: &[[f32; PADDED]], leaves: &[Lanes], step: f32) -> [u8; LANES] {
+fn codes(
+    frames: &[[f32; PADDED]],
+    leaves: &[Lanes],
+    apart: &[f32; LANES],
+    step: f32,
+    fine: bool,
+) -> [u8; LANES] {
     let mut nearest = [f32::INFINITY; LANES];
-    for (nearest, leaf) in nearest.iter_mut().zip(leaves) {
+    let mut first = 0;
+    for (lane, &other) in apart.iter().enumerate() {
+        if other < apart[first] {
+            first = lane;
+        }
+    }
+    // Beyond, all codes are the same.
+    let end = 255.0 / DOWN * step * (1.0 + 1e-6);
+    let mut limit = end * end;
+    for turn in 0..LANES {
+        // The one that lies nearest first, then the others in order.
+        let lane = match turn {
+            0 => first,
+            _ => turn - usize::from(turn <= first),
+        };
+        if apart[lane] >= limit {
+            continue;
+        }
         let mut least = [f32::INFINITY; LANES];
         for frame in frames {
             let mut sum = [0.0f32; LANES];
-            for (&value, lanes) in frame.iter().zip(&leaf[..POSE]) {
+            for (&value, lanes) in frame.iter().zip(&leaves[lane][..POSE]) {
                 for (sum, &row) in sum.iter_mut().zip(lanes) {
                     let difference = row - value;
                     *sum = difference.mul_add(difference, *sum);
@@ -197,7 +281,14 @@ fn codes(frames: &[[f32; PADDED]], leaves: &[Lanes], step: f32) -> [u8; LANES] {
             }
         }
         for least in least {
-            *nearest = if least < *nearest { least } else { *nearest };
+            nearest[lane] = if least < nearest[lane] {
+                least
+            } else {
+                nearest[lane]
+            };
+        }
+        if !fine && nearest[lane] < limit {
+            limit = nearest[lane];
         }
     }
     let mut codes = [0; LANES];

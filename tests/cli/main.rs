@@ -1,5 +1,6 @@
 //! The program as its user meets it: options, messages, exit codes, files.
 
+mod bench;
 #[cfg(unix)]
 mod damaged;
 mod data;

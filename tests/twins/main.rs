@@ -5,6 +5,7 @@
 //! The tests need a software Vulkan adapter (lavapipe) and fail without one.
 
 mod act;
+mod ceiling;
 mod checked;
 mod collide;
 mod gae;

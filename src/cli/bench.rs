@@ -1,0 +1,252 @@
+//! `footwork bench`.
+
+use super::Usage;
+use anyhow::{Context, Result};
+use clap::Args;
+use footwork::benchmark::{Plan, Row, STAGES, run};
+use footwork::gpu::Choice;
+use footwork::report::scaling::{self, Curve, Panel};
+use footwork::report::table::table;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+#[derive(Args)]
+pub struct Bench {
+    /// Only stages with this in their name: memory, arithmetic, search, rasterise, hits, environment,
+    /// network, training
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "",
+        hide_default_value = true
+    )]
+    filter: String,
+    /// Where to measure [default: one core, all cores, lavapipe and a real GPU, as far as there]
+    #[arg(long, value_enum, default_value = "auto", hide_default_value = true)]
+    device: Choice,
+    /// A folder of BVH files or one BVH file [default: synthetic motion]
+    #[arg(long, value_name = "DIR|FILE")]
+    data: Option<PathBuf>,
+    /// Write all figures to this file too
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// The picture of the scaling curves
+    #[arg(long, value_name = "FILE", default_value = "bench.png")]
+    picture: PathBuf,
+}
+
+impl Bench {
+    pub fn run(self) -> Result<()> {
+        if !STAGES.iter().any(|stage| stage.contains(&self.filter)) {
+            let why = format!(
+                "no stage is called like {:?}: there are {}",
+                self.filter,
+                STAGES.join(", ")
+            );
+            return Err(Usage(why).into());
+        }
+        for file in self.json.iter().chain([&self.picture]) {
+            writable(file)?;
+        }
+        let line = ProgressBar::new_spinner()
+            .with_style(ProgressStyle::with_template("{elapsed} {wide_msg}")?);
+        line.enable_steady_tick(Duration::from_secs(1));
+        let plan = Plan {
+            filter: &self.filter,
+            device: self.device,
+            data: self.data.as_deref(),
+        };
+        let rows = run(&plan, &|what| line.set_message(what.to_string()))?;
+        line.finish_and_clear();
+        print!("{}", shown(&rows));
+        if let Some(file) = &self.json {
+            let text = serde_json::to_string_pretty(&json!({ "rows": rows }))?;
+            footwork::store::write_whole(file, text.as_bytes())
+                .with_context(|| format!("cannot write {}", file.display()))?;
+        }
+        let panels = panels(&rows);
+        if !panels.is_empty() {
+            scaling::draw(&self.picture, &panels)?;
+            println!("see {}", self.picture.display());
+        }
+        for line in advice(&rows) {
+            println!("{line}");
+        }
+        Ok(())
+    }
+}
+
+/// Before minutes of measuring are lost.
+fn writable(file: &Path) -> Result<()> {
+    let folder = match file.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    if file.is_dir() || !folder.is_dir() {
+        let why = format!(
+            "{} is no place for a file: its folder must exist",
+            file.display()
+        );
+        return Err(Usage(why).into());
+    }
+    Ok(())
+}
+
+fn shown(rows: &[Row]) -> String {
+    let headers = [
+        "stage",
+        "variant",
+        "device",
+        "frames",
+        "envs",
+        "batch",
+        "a second",
+        "time each",
+        "MB",
+        "roofline %",
+    ];
+    let cells = rows.iter().map(|row| {
+        let size = |size: usize| {
+            if size > 0 {
+                size.to_string()
+            } else {
+                String::new()
+            }
+        };
+        vec![
+            row.stage.to_string(),
+            row.variant.clone(),
+            place(row),
+            size(row.frames),
+            size(row.envs),
+            size(row.batch),
+            speed(row.per_s),
+            duration(1.0 / row.per_s),
+            row.bytes
+                .map_or(String::new(), |b| format!("{:.1}", b as f64 / 1e6)),
+            row.roofline
+                .map_or(String::new(), |r| format!("{:.1}", 100.0 * r)),
+        ]
+    });
+    table(&headers, &cells.collect::<Vec<_>>())
+}
+
+fn place(row: &Row) -> String {
+    match (row.device.as_str(), row.threads) {
+        ("cpu", 1) => "cpu, one core".to_string(),
+        ("cpu", threads) => format!("cpu, {threads} cores"),
+        (name, _) if name.contains("llvmpipe") => "lavapipe".to_string(),
+        (name, _) => name.to_string(),
+    }
+}
+
+fn speed(per_s: f64) -> String {
+    match per_s {
+        1e9.. => format!("{:.1} G", per_s / 1e9),
+        1e6.. => format!("{:.1} M", per_s / 1e6),
+        1e4.. => format!("{:.0} k", per_s / 1e3),
+        _ => format!("{per_s:.0}"),
+    }
+}
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        1e-3.. => format!("{:.2} ms", seconds * 1e3),
+        1e-6.. => format!("{:.2} us", seconds * 1e6),
+        _ => format!("{:.2} ns", seconds * 1e9),
+    }
+}
+
+/// Curves of what has sizes: the search by frames, training by environments.
+fn panels(rows: &[Row]) -> Vec<Panel> {
+    let by_frames = |row: &Row| row.frames;
+    let by_envs = |row: &Row| row.envs;
+    let panel = |title: &str, x, y, stage, variant, size: &dyn Fn(&Row) -> usize| {
+        let mut curves: Vec<Curve> = Vec::new();
+        for row in rows
+            .iter()
+            .filter(|row| row.stage == stage && row.variant == variant)
+        {
+            let point = (size(row) as f64, row.per_s);
+            let name = place(row);
+            match curves.iter_mut().find(|curve| curve.name == name) {
+                Some(curve) => curve.points.push(point),
+                None => curves.push(Curve {
+                    name,
+                    points: vec![point],
+                }),
+            }
+        }
+        Panel {
+            title: title.to_string(),
+            x,
+            y,
+            curves,
+        }
+    };
+    let (frames, envs) = ("frames", "environments");
+    let all = [
+        panel(
+            "search, all rows",
+            frames,
+            "queries a second",
+            "search",
+            "brute",
+            &by_frames,
+        ),
+        panel(
+            "search, by the index",
+            frames,
+            "queries a second",
+            "search",
+            "indexed",
+            &by_frames,
+        ),
+        panel(
+            "training, plane",
+            envs,
+            "steps a second",
+            "training",
+            "plane",
+            &by_envs,
+        ),
+        panel(
+            "training, obstacles",
+            envs,
+            "steps a second",
+            "training",
+            "obstacles",
+            &by_envs,
+        ),
+    ];
+    all.into_iter()
+        .filter(|panel| !panel.curves.is_empty())
+        .collect()
+}
+
+/// Which device is the quickest, by task.
+fn advice(rows: &[Row]) -> Vec<String> {
+    let best = |task: &str| {
+        let of = rows
+            .iter()
+            .filter(|row| row.stage == "training" && row.variant == task);
+        of.max_by(|a, b| a.per_s.total_cmp(&b.per_s))
+    };
+    let say = |task: &str| {
+        let row = best(task)?;
+        let option = match place(row).as_str() {
+            "lavapipe" => "lavapipe",
+            _ if row.device == "cpu" => "cpu",
+            _ => "gpu",
+        };
+        Some(format!(
+            "use `train {task} --device {option}`: {} steps/s with {} environments on {}",
+            speed(row.per_s),
+            row.envs,
+            place(row)
+        ))
+    };
+    ["plane", "obstacles"].into_iter().filter_map(say).collect()
+}
