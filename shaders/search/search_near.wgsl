@@ -6,8 +6,8 @@
 //
 // rows     [leaves * LEAF][QUADS] of vec4   in the index's order; the last number is the candidate
 // boxes    [AXES + groups + leaves][CORNERS] of vec4   the 12 principal axes, the groups, the leaves
-// codes    bytes: [blocks][groups], padded to whole words, then [blocks][leaves]: the distance of a
-//          block of frames to the group's, the leaf's poses
+// codes    [frames] block of every frame; then bytes: [blocks][groups], padded to whole words, and
+//          [blocks][leaves]: the distance of the block's poses to the group's, the leaf's
 // shown    [count]                          frame whose pose a query has
 // queries  [count][QUADS] of vec4
 // asked    [ASKED][count]
@@ -20,8 +20,8 @@
 struct Params {
     count: u32,
     groups: u32,
-    // Frames a block.
-    block: u32,
+    // Of the database.
+    frames: u32,
     // Distance a unit of a byte.
     step: f32,
     // Length of the longest trajectory.
@@ -76,12 +76,16 @@ fn turn(p: Feature, q: Feature, r: Feature, s: Feature) -> Turned {
     );
 }
 
-fn code(first: u32, at: u32) -> u32 {
-    return codes[first + at / 4u] >> (8u * (at % 4u));
+fn code(at: u32) -> u32 {
+    return codes[params.frames + at / 4u] >> (8u * (at % 4u));
 }
 
-fn four_codes(first: u32, at: vec4u) -> vec4u {
-    return vec4u(code(first, at.x), code(first, at.y), code(first, at.z), code(first, at.w));
+fn four_codes(at: vec4u) -> vec4u {
+    return vec4u(code(at.x), code(at.y), code(at.z), code(at.w));
+}
+
+fn block_of(query: u32) -> u32 {
+    return codes[shown[query]];
 }
 
 fn nearest_in(group: u32, q: Feature) -> Nearest {
@@ -132,11 +136,11 @@ fn search_near(@builtin(workgroup_id) group_id: vec3u, @builtin(local_invocation
     let r = load_query(known.z);
     let s = load_query(known.w);
     let t = turn(p, q, r, s);
-    let block = vec4u(shown[known.x], shown[known.y], shown[known.z], shown[known.w]) / params.block;
+    let block = vec4u(block_of(known.x), block_of(known.y), block_of(known.z), block_of(known.w));
     var least = vec4f(FAR);
     var nearest = vec4u(0u);
     for (var group = 0u; group < params.groups; group++) {
-        let poses = squares(four_codes(0u, block * params.groups + group), params.step);
+        let poses = squares(four_codes(block * params.groups + group), params.step);
         let bound = bounds(load_box(group), t, poses);
         nearest = select(nearest, vec4u(group), bound < least);
         least = min(least, bound);

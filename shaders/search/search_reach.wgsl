@@ -18,8 +18,8 @@ struct Params {
     first: u32,
     last: u32,
     run: u32,
-    // Frames a block.
-    block: u32,
+    // Of the database: word of `codes` where those of the groups begin.
+    frames: u32,
     // Word of `codes` where those of the leaves begin; 0 if there are none.
     leaf_codes: u32,
     // Distance a unit of a byte.
@@ -65,14 +65,14 @@ fn load_four(first: u32) -> Four {
         load_asked(8u, at), load_asked(9u, at), load_asked(10u, at), load_asked(11u, at),
     );
     let limit = vec4f(limit_at(at.x), limit_at(at.y), limit_at(at.z), limit_at(at.w));
-    let place = vec4u(shown[at.x], shown[at.y], shown[at.z], shown[at.w]) / params.block * params.groups;
+    let place = vec4u(codes[shown[at.x]], codes[shown[at.y]], codes[shown[at.z]], codes[shown[at.w]]) * params.groups;
     return Four(t, limit, place);
 }
 
 // The codes of four neighbouring leaves; a group's own code holds for each of its leaves.
 fn codes_at(place: u32, leaf: u32) -> u32 {
     let group = place + leaf / GROUP;
-    let word = select(params.leaf_codes + (place * GROUP + leaf) / 4u, group / 4u, params.leaf_codes == 0u);
+    let word = select(params.leaf_codes + (place * GROUP + leaf) / 4u, params.frames + group / 4u, params.leaf_codes == 0u);
     let found = codes[word];
     return select(found, (found >> (8u * (group % 4u)) & 0xffu) * 0x01010101u, params.leaf_codes == 0u);
 }

@@ -16,7 +16,7 @@ pub struct Ceiling {
 const COPIED: u32 = 1 << 23;
 /// Quadruples added up, and how often. An invocation stays below lavapipe's 65,535 iterations.
 const ADDED: u32 = 1 << 16;
-const ROUNDS: u32 = 256;
+const ROUNDS: u32 = 64;
 
 impl Ceiling {
     /// Of what memory or arithmetic allow, whichever is nearer.

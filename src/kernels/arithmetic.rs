@@ -13,8 +13,10 @@ crate::shader_params! {
     }
 }
 
-/// Operations on each quadruple in a round: eight multiplications and additions of four numbers.
-pub const OPERATIONS: u64 = 64;
+/// Times that eight parts of each quadruple are halved in a round.
+const TIMES: u32 = 4;
+/// Multiplications and additions for each quadruple in a round.
+pub const OPERATIONS: u64 = 2 * 4 * 8 * TIMES as u64;
 /// Quadruples at a time on the CPU, to fill its registers.
 const TOGETHER: usize = 4;
 const NUMBERS: usize = 4 * TOGETHER;
@@ -47,7 +49,7 @@ fn add(x: &[f32; NUMBERS], rounds: u32) -> [f32; NUMBERS] {
     }
     // Were it known to be constant, the compiler would not use the widest registers.
     let half = std::hint::black_box([0.5f32; NUMBERS]);
-    for _ in 0..rounds {
+    for _ in 0..rounds * TIMES {
         for part in &mut parts {
             halve(part, &half);
         }

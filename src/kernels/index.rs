@@ -27,6 +27,12 @@ pub fn bound(corners: &[[f32; TRAJECTORY]], asked: &[f32; TRAJECTORY], pose: f32
     })
 }
 
+/// The block of frames that a frame belongs to.
+pub fn block_of(codes: &[u8], frame: u32) -> usize {
+    let bytes = &codes[4 * frame as usize..][..4];
+    u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]) as usize
+}
+
 /// Square of a distance given as a byte.
 pub fn square(code: u8, step: f32) -> f32 {
     let distance = f32::from(code) * step;

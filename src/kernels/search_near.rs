@@ -1,6 +1,6 @@
 //! A first candidate for every query, by the index. Shader: `shaders/search/search_near.wgsl`.
 
-use super::index::{ASKED, GROUP, LANES, LEAF, bound, corners, offer, square};
+use super::index::{ASKED, GROUP, LANES, LEAF, block_of, bound, corners, offer, square};
 use super::search_exact::squared;
 use crate::gpu::shader::search_near::constants;
 use crate::gpu::{Buffer, Gpu, shader};
@@ -12,8 +12,8 @@ crate::shader_params! {
         /// Queries.
         pub count: u32,
         pub groups: u32,
-        /// Frames a block.
-        pub block: u32,
+        /// Of the database.
+        pub frames: u32,
         /// Distance a unit of a byte.
         pub step: f32,
         /// Length of the longest trajectory.
@@ -60,7 +60,8 @@ pub fn twin(
     let (count, groups) = (params.count as usize, params.groups as usize);
     for (at, query) in queries.iter().enumerate().take(count) {
         let turned = turn(boxes, query);
-        let place = (shown[at] / params.block) as usize * groups;
+        let place = block_of(codes, shown[at]) * groups;
+        let codes = &codes[4 * params.frames as usize..];
         let (mut least, mut nearest) = (f32::MAX, 0);
         for group in 0..groups {
             let pose = square(codes[place + group], params.step);

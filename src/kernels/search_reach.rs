@@ -1,6 +1,6 @@
 //! The leaves of the index that may hold something nearer. Shader: `shaders/search/search_reach.wgsl`.
 
-use super::index::{ASKED, GROUP, LANES, bound, corners, limit, square};
+use super::index::{ASKED, GROUP, LANES, block_of, bound, corners, limit, square};
 use crate::gpu::shader::search_reach::constants;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::features::TRAJECTORY;
@@ -15,8 +15,8 @@ crate::shader_params! {
         pub last: u32,
         /// Leaves an invocation looks at, a multiple of 32.
         pub run: u32,
-        /// Frames a block.
-        pub block: u32,
+        /// Of the database: word of `codes` where those of the groups begin.
+        pub frames: u32,
         /// Word of `codes` where those of the leaves begin; 0 if there are none.
         pub leaf_codes: u32,
         /// Distance a unit of a byte.
@@ -61,13 +61,13 @@ pub fn twin(
         let known = (0..LANES).map(|lane| distance[lane * count + at]);
         let slack = asked[(ASKED - 1) * count + at];
         let limit = limit(known.fold(f32::MAX, f32::min), slack);
-        let place = (shown[at] / params.block) as usize * groups;
+        let place = block_of(codes, shown[at]) * groups;
         for word in 0..(last - first).div_ceil(32) {
             reach[word * count + at] = 0;
         }
         for leaf in first..last {
             let code = match params.leaf_codes as usize {
-                0 => codes[place + leaf / GROUP],
+                0 => codes[4 * params.frames as usize + place + leaf / GROUP],
                 leaves => codes[4 * leaves + place * GROUP + leaf],
             };
             let corners = corners(boxes, groups + leaf);

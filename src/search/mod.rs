@@ -40,7 +40,7 @@ pub struct Index {
 
 const FORMAT: Format = Format {
     kind: "index",
-    version: 2,
+    version: 3,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -120,8 +120,8 @@ impl Index {
             header.shape,
             arrays.take("by_group")?,
             arrays.take("by_leaf")?,
-            frames.len(),
-            tree.inner.len(),
+            frames,
+            &tree,
         )?;
         Some(Self::join(&rows, axes, tree, poses))
     }
@@ -243,7 +243,11 @@ fn visit(tree: &Tree, group: usize, asked: &Asked, best: &mut Best) {
     let Some(boxes) = tree.inner.get(group) else {
         return;
     };
-    let inner = bounds(boxes, &asked.trajectory, asked.poses.to_leaves(group));
+    let inner = bounds(
+        boxes,
+        &asked.trajectory,
+        asked.poses.to_leaves(group, asked.query),
+    );
     for (lane, bound) in inner.into_iter().enumerate() {
         if bound > best.limit {
             continue;

@@ -13,13 +13,14 @@ pub struct Packed {
     pub coarse: Vec<[u8; PADDED]>,
     /// `[12 + 2 * (groups + leaves)][TRAJECTORY]`
     pub boxes: Vec<[f32; TRAJECTORY]>,
-    /// Bytes: `[blocks][groups]`, padded to whole words, then `[blocks][leaves]` if there are any.
+    /// The block of every frame, as words; bytes: `[blocks][groups]`, padded to whole words, then
+    /// `[blocks][leaves]` if there are any.
     pub codes: Vec<u8>,
-    /// Word of `codes` where those of the leaves begin; 0 if there are none.
+    /// Frames: word of `codes` where those of the groups begin.
+    pub frames: u32,
+    /// Word where those of the leaves begin; 0 if there are none.
     pub leaf_codes: u32,
     pub groups: u32,
-    /// Frames a block.
-    pub block: u32,
     /// Distance a unit of a byte of `codes`.
     pub step: f32,
     /// Length of the longest trajectory.
@@ -44,7 +45,8 @@ impl Packed {
                 boxes.extend([corner(&inner.low, lane), corner(&inner.high, lane)]);
             }
         }
-        let mut codes = super::padded(&poses.by_group);
+        let mut codes = bytemuck::cast_slice(&poses.block_of).to_vec();
+        codes.extend(super::padded(&poses.by_group));
         let leaf_codes = match poses.by_leaf.is_empty() {
             true => 0,
             false => codes.len() as u32 / 4,
@@ -68,7 +70,7 @@ impl Packed {
             codes,
             leaf_codes,
             groups: tree.inner.len() as u32,
-            block: poses.shape.block as u32,
+            frames: poses.block_of.len() as u32,
             step: poses.shape.step,
             longest: index.longest,
         }

@@ -1,10 +1,11 @@
 //! How near the poses of the database come to each other: a query's pose half is always a row of
 //! the database itself, so how far it is from every leaf's poses is known before it is asked.
 //!
-//! For every block of neighbouring frames and every leaf, and every group of leaves: the least
-//! distance from any pose of the one to any pose of the other, rounded down to a byte.
+//! For every block of frames and every leaf, and every group of leaves: the least distance from any
+//! pose of the one to any pose of the other, rounded down to a byte. Where memory is too short for a
+//! byte for every leaf, boxes around the leaves' poses take their place.
 
-use super::tree::{LANES, Lanes, Tree};
+use super::tree::{self, LANES, Lanes, Tree};
 use crate::motion::database::PADDED;
 use crate::motion::features::POSE;
 use multiversion::multiversion;
@@ -13,10 +14,20 @@ use serde::{Deserialize, Serialize};
 
 pub struct Poses {
     pub shape: Shape,
+    /// The block of every frame.
+    pub block_of: Vec<u32>,
     /// `[blocks][groups]`
     pub by_group: Vec<u8>,
     /// `[blocks][groups][LANES]`; empty where memory was short.
     pub by_leaf: Vec<[u8; LANES]>,
+    /// Around the leaves' poses, `[groups]`; only where memory was short.
+    boxes: Vec<Boxes>,
+}
+
+/// Sixteen boxes around poses.
+struct Boxes {
+    low: [[f32; LANES]; POSE],
+    high: [[f32; LANES]; POSE],
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,6 +51,8 @@ impl Poses {
     /// needs more, in that.
     pub fn of(frames: &[[f32; PADDED]], tree: &Tree, memory: usize) -> Self {
         let groups = tree.inner.len();
+        // The block of every frame is part of it, and codes are padded to whole words.
+        let memory = memory.saturating_sub(size_of::<u32>() * (frames.len() + 1));
         let find = |codes: usize| {
             let fits = |&block: &usize| frames.len().div_ceil(block) * groups * codes <= memory;
             BLOCKS.into_iter().find(fits)
@@ -48,6 +61,8 @@ impl Poses {
             Some(block) if block <= BY_LEAF => (block, LANES),
             _ => (find(1).unwrap_or(BLOCKS[BLOCKS.len() - 1]), 0),
         };
+        let (order, block_of) = sorted(frames, block);
+        let sorted: Vec<_> = order.iter().map(|&at| frames[at as usize]).collect();
         let blocks = frames.len().div_ceil(block);
         let step = step(frames);
         let mut poses = Poses {
@@ -56,14 +71,16 @@ impl Poses {
                 groups,
                 step,
             },
+            block_of,
             by_group: vec![0; blocks * groups],
             by_leaf: vec![[0; LANES]; blocks * groups * lanes / LANES],
+            boxes: Vec::new(),
         };
-        let boxes: Vec<Around> = tree.leaves.par_iter().map(Around::leaf).collect();
+        let boxes = boxes(tree);
         let fine = lanes > 0;
         let mut by_leaf: Vec<&mut [[u8; LANES]]> = poses.by_leaf.chunks_mut(groups).collect();
         by_leaf.resize_with(blocks, || &mut []);
-        frames
+        sorted
             .par_chunks(block)
             .zip(poses.by_group.par_chunks_mut(groups))
             .zip(by_leaf)
@@ -71,14 +88,16 @@ impl Poses {
                 let around = Around::frames(frames);
                 for (group, least) in by_group.iter_mut().enumerate() {
                     let leaves = &tree.leaves[group * LANES..][..LANES];
-                    let apart = around.apart(&boxes[group * LANES..][..LANES]);
-                    let codes = codes(frames, leaves, &apart, step, fine);
+                    let codes = codes(frames, &around, leaves, &boxes[group], step, fine);
                     *least = codes.into_iter().fold(u8::MAX, u8::min);
                     if let Some(kept) = by_leaf.get_mut(group) {
                         *kept = codes;
                     }
                 }
             });
+        if !fine {
+            poses.boxes = boxes;
+        }
         poses
     }
 
@@ -88,37 +107,43 @@ impl Poses {
         shape: Shape,
         mut by_group: Vec<u8>,
         by_leaf: Vec<[u8; LANES]>,
-        frames: usize,
-        groups: usize,
+        frames: &[[f32; PADDED]],
+        tree: &Tree,
     ) -> Option<Self> {
-        if shape.block == 0 || shape.groups != groups {
+        if shape.block == 0 || shape.groups != tree.inner.len() {
             return None;
         }
-        let codes = frames.div_ceil(shape.block) * groups;
+        let codes = frames.len().div_ceil(shape.block) * shape.groups;
         let fits = by_group.len() == codes.next_multiple_of(4)
             && (by_leaf.is_empty() || by_leaf.len() == codes);
         by_group.truncate(codes);
-        fits.then_some(Poses {
+        let boxes = match by_leaf.is_empty() {
+            true => boxes(tree),
+            false => Vec::new(),
+        };
+        fits.then(|| Poses {
+            block_of: sorted(frames, shape.block).1,
             shape,
             by_group,
             by_leaf,
+            boxes,
         })
     }
 
     pub fn bytes(&self) -> usize {
-        self.by_group.len() + self.by_leaf.len() * LANES
+        self.by_group.len()
+            + size_of_val(&self.by_leaf[..])
+            + size_of_val(&self.block_of[..])
+            + size_of_val(&self.boxes[..])
     }
 
     /// What is known of one frame's pose.
     #[inline(always)]
     pub fn row(&self, frame: u32) -> Row<'_> {
-        let Shape {
-            block,
-            groups,
-            step,
-        } = self.shape;
-        let first = frame as usize / block * groups;
+        let Shape { groups, step, .. } = self.shape;
+        let first = self.block_of[frame as usize] as usize * groups;
         Row {
+            boxes: &self.boxes,
             by_group: &self.by_group[first..][..groups],
             by_leaf: self.by_leaf.get(first..first + groups),
             step,
@@ -131,6 +156,7 @@ impl Poses {
 pub struct Row<'a> {
     by_group: &'a [u8],
     by_leaf: Option<&'a [[u8; LANES]]>,
+    boxes: &'a [Boxes],
     step: f32,
 }
 
@@ -147,12 +173,21 @@ impl Row<'_> {
         self.squares(padded)
     }
 
-    /// To the leaves of a group.
+    /// To the leaves of a group, of the pose of `query`.
     #[inline(always)]
-    pub fn to_leaves(self, group: usize) -> [f32; LANES] {
+    pub fn to_leaves(self, group: usize, query: &[f32; PADDED]) -> [f32; LANES] {
         match self.by_leaf {
             Some(codes) => self.squares(codes[group]),
-            None => self.squares([self.by_group[group]; LANES]),
+            None => {
+                let mut bounds = self.squares([self.by_group[group]; LANES]);
+                for (bound, other) in bounds
+                    .iter_mut()
+                    .zip(self.boxes[group].outside(query, query))
+                {
+                    *bound = if other > *bound { other } else { *bound };
+                }
+                bounds
+            }
         }
     }
 
@@ -177,6 +212,57 @@ fn step(frames: &[[f32; PADDED]]) -> f32 {
         .sum();
     // Of equal poses any step would do but 0.
     (variance.sqrt() as f32 * (2.5 / 255.0)).max(1e-20)
+}
+
+/// The order in which blocks take the frames, and the block of each. A few neighbours in time are
+/// nearer to each other than what a k-d tree puts together, many are not.
+fn sorted(frames: &[[f32; PADDED]], block: usize) -> (Vec<u32>, Vec<u32>) {
+    let pose = |frame: &[f32; PADDED]| -> [f32; POSE] { std::array::from_fn(|d| frame[d]) };
+    let keys: Vec<_> = frames.iter().map(pose).collect();
+    let mut order: Vec<u32> = (0..frames.len() as u32).collect();
+    if block > BY_LEAF {
+        tree::sort(&keys, &mut order, [block, block]);
+    }
+    let mut block_of = vec![0; frames.len()];
+    for (at, &frame) in order.iter().enumerate() {
+        block_of[frame as usize] = (at / block) as u32;
+    }
+    (order, block_of)
+}
+
+impl Boxes {
+    fn pack(leaves: &[Around]) -> Self {
+        let corner = |of: fn(&Around) -> &[f32; POSE]| {
+            std::array::from_fn(|d| std::array::from_fn(|lane| of(&leaves[lane])[d]))
+        };
+        Boxes {
+            low: corner(|leaf| &leaf.low),
+            high: corner(|leaf| &leaf.high),
+        }
+    }
+
+    /// Squared distances to a box from `least` to `greatest`. Leaves without rows are infinitely far
+    /// away.
+    #[inline(always)]
+    fn outside(&self, least: &[f32], greatest: &[f32]) -> [f32; LANES] {
+        let mut sum = [0.0; LANES];
+        let boxes = self.low.iter().zip(&self.high);
+        for ((lows, highs), (&least, &greatest)) in boxes.zip(least.iter().zip(greatest)) {
+            for ((sum, &low), &high) in sum.iter_mut().zip(lows).zip(highs) {
+                let (below, above) = (low - greatest, least - high);
+                let outside = if below > above { below } else { above };
+                let outside = if outside > 0.0 { outside } else { 0.0 };
+                *sum = outside.mul_add(outside, *sum);
+            }
+        }
+        sum
+    }
+}
+
+/// Around the poses of all leaves, by group.
+fn boxes(tree: &Tree) -> Vec<Boxes> {
+    let around: Vec<Around> = tree.leaves.par_iter().map(Around::leaf).collect();
+    around.chunks(LANES).map(Boxes::pack).collect()
 }
 
 /// The box around some poses.
@@ -217,25 +303,11 @@ impl Around {
         }
         around
     }
-
-    /// Squared distances to the boxes around sixteen leaves: no pose of the one is nearer to a pose
-    /// of the other.
-    fn apart(&self, leaves: &[Around]) -> [f32; LANES] {
-        let mut apart = [0.0; LANES];
-        for (apart, leaf) in apart.iter_mut().zip(leaves) {
-            for dimension in 0..POSE {
-                let below = leaf.low[dimension] - self.high[dimension];
-                let above = self.low[dimension] - leaf.high[dimension];
-                let outside = below.max(above).max(0.0);
-                *apart += outside * outside;
-            }
-        }
-        apart
-    }
 }
 
-/// Of every leaf of a group; if not `fine`, only the least of them has a meaning. Leaves too far
-/// `apart` to matter are not looked into: an error of rounding there is far less than [`DOWN`] allows.
+/// Of every leaf of a group; if not `fine`, only the least of them has a meaning. Leaves whose box is
+/// too far from that `around` the frames are not looked into: an error of rounding there is far less
+/// than [`DOWN`] allows.
 #[multiversion(targets(
     "x86_64+avx512f+avx512vl+avx512dq+avx512bw+fma",
     "x86_64+avx2+fma",
@@ -243,11 +315,13 @@ impl Around {
 ))]
 fn codes(
     frames: &[[f32; PADDED]],
+    around: &Around,
     leaves: &[Lanes],
-    apart: &[f32; LANES],
+    boxes: &Boxes,
     step: f32,
     fine: bool,
 ) -> [u8; LANES] {
+    let apart = boxes.outside(&around.low, &around.high);
     let mut nearest = [f32::INFINITY; LANES];
     let mut first = 0;
     for (lane, &other) in apart.iter().enumerate() {
@@ -297,4 +371,50 @@ fn codes(
         *code = (nearest.sqrt() * DOWN / step) as u8;
     }
     codes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernels::rng::{gaussian, random4};
+    use crate::search::axes::Axes;
+
+    /// Skipping leaves that lie far apart changes no code.
+    #[test]
+    fn codes_are_those_of_comparing_all() {
+        let frames: Vec<[f32; PADDED]> = (0..3000)
+            .map(|i| {
+                // Ten bundles, so that many leaves lie far apart.
+                let bundle = i % 10;
+                std::array::from_fn(|d| {
+                    let centre = 3.0 * gaussian(random4(1, bundle, d as u32, 0));
+                    centre + gaussian(random4(2, i, d as u32, 0))
+                })
+            })
+            .collect();
+        let tree = Tree::of(&frames, &Axes::of(&frames), None);
+        let (groups, step) = (tree.inner.len(), step(&frames));
+        let whole = Around::frames(&frames);
+        let everywhere = Boxes {
+            low: [[-1e9; LANES]; POSE],
+            high: [[1e9; LANES]; POSE],
+        };
+        for memory in [1 << 30, 0] {
+            let poses = Poses::of(&frames, &tree, memory);
+            assert_eq!(poses.by_leaf.is_empty(), memory == 0);
+            for (block, by_group) in poses.by_group.chunks(groups).enumerate() {
+                let of_block = |&at: &usize| poses.block_of[at] as usize == block;
+                let inside: Vec<_> = (0..frames.len()).filter(of_block).collect();
+                let inside: Vec<_> = inside.into_iter().map(|at| frames[at]).collect();
+                for (group, &code) in by_group.iter().enumerate() {
+                    let leaves = &tree.leaves[group * LANES..][..LANES];
+                    let plain = codes(&inside, &whole, leaves, &everywhere, step, true);
+                    assert_eq!(Some(&code), plain.iter().min());
+                    if let Some(by_leaf) = poses.by_leaf.get(block * groups + group) {
+                        assert_eq!(*by_leaf, plain);
+                    }
+                }
+            }
+        }
+    }
 }

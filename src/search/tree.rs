@@ -56,7 +56,7 @@ impl Tree {
         let keys: Vec<Key> = rows.par_iter().map(key).collect();
         let order = order.unwrap_or_else(|| {
             let mut order: Vec<u32> = (0..rows.len() as u32).collect();
-            sort(&keys, &mut order);
+            sort(&keys, &mut order, [LANES, GROUP]);
             order
         });
         let groups = rows.len().div_ceil(GROUP);
@@ -100,14 +100,15 @@ impl Tree {
 }
 
 /// Splits at the median of the widest dimension until a leaf is left. Halves hold whole groups,
-/// later whole leaves, so that leaves fill up and groups are subtrees.
-fn sort(keys: &[Key], order: &mut [u32]) {
-    if order.len() <= LANES {
+/// later whole leaves, so that leaves fill up and groups are subtrees; `sizes` are theirs.
+pub fn sort<const D: usize>(keys: &[[f32; D]], order: &mut [u32], sizes: [usize; 2]) {
+    let [leaf, group] = sizes;
+    if order.len() <= leaf {
         // Ascending ids: the first of equals in a leaf has the lowest.
         order.sort_unstable();
         return;
     }
-    let unit = if order.len() > GROUP { GROUP } else { LANES };
+    let unit = if order.len() > group { group } else { leaf };
     let middle = (order.len().div_ceil(unit) / 2) * unit;
     let dimension = widest(keys, order);
     order.select_nth_unstable_by(middle, |&a, &b| {
@@ -116,14 +117,14 @@ fn sort(keys: &[Key], order: &mut [u32]) {
             .then(a.cmp(&b))
     });
     let (left, right) = order.split_at_mut(middle);
-    rayon::join(|| sort(keys, left), || sort(keys, right));
+    rayon::join(|| sort(keys, left, sizes), || sort(keys, right, sizes));
 }
 
 /// The dimension of the largest variance.
-fn widest(keys: &[Key], order: &[u32]) -> usize {
-    let (mut sum, mut square) = ([0.0f64; FEATURE], [0.0f64; FEATURE]);
+fn widest<const D: usize>(keys: &[[f32; D]], order: &[u32]) -> usize {
+    let (mut sum, mut square) = ([0.0f64; D], [0.0f64; D]);
     for &id in order {
-        for dimension in 0..FEATURE {
+        for dimension in 0..D {
             let value = f64::from(keys[id as usize][dimension]);
             sum[dimension] += value;
             square[dimension] += value * value;
@@ -131,7 +132,7 @@ fn widest(keys: &[Key], order: &[u32]) -> usize {
     }
     let n = order.len() as f64;
     let variance = |d: usize| square[d] - sum[d] * sum[d] / n;
-    (0..FEATURE)
+    (0..D)
         .max_by(|&a, &b| variance(a).total_cmp(&variance(b)))
         .unwrap_or(0)
 }

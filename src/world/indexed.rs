@@ -51,7 +51,7 @@ impl Indexed {
             near: search_near::Params {
                 count: count as u32,
                 groups: packed.groups,
-                block: packed.block,
+                frames: packed.frames,
                 step: packed.step,
                 longest: packed.longest,
             },
@@ -104,7 +104,7 @@ impl Indexed {
                 first,
                 last,
                 run: RUN,
-                block: self.near.block,
+                frames: self.near.frames,
                 leaf_codes: self.leaf_codes,
                 step: self.near.step,
             },

@@ -54,7 +54,7 @@ fn all_is_added_up() {
         arithmetic::twin(&mut twin, &params);
         // x + k goes half the way to 1 in each round.
         for (twin, start) in twin.as_flattened().iter().zip(start.as_flattened()) {
-            let rest = 0.5f64.powi(rounds as i32);
+            let rest = 0.5f64.powi(4 * rounds as i32);
             let each = (0..8).map(|k| 1.0 + rest * (f64::from(*start) + f64::from(k) - 1.0));
             assert!((f64::from(*twin) - each.sum::<f64>()).abs() < 1e-4);
         }

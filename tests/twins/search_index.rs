@@ -79,7 +79,7 @@ impl Case {
         search_near::Params {
             count: self.count() as u32,
             groups: self.packed.groups,
-            block: self.packed.block,
+            frames: self.packed.frames,
             step: self.packed.step,
             longest: self.packed.longest,
         }
@@ -92,7 +92,7 @@ impl Case {
             first: 0,
             last: self.leaves() as u32,
             run: 64,
-            block: self.packed.block,
+            frames: self.packed.frames,
             leaf_codes: self.packed.leaf_codes,
             step: self.packed.step,
         }
