@@ -21,6 +21,7 @@
 //! - [`kernels`]: one file a shader: parameters, launch, twin;
 //! - [`search`]: the exact search's index, and the search on the CPU;
 //! - [`world`]: a batch of worlds, by shaders or by twins;
+//! - [`playback`]: the whole body of a walk: stitching, foot locking, and how good it looks;
 //! - [`ppo`]: policy, rollout, update;
 //! - [`train`]: configuration, run folder, checkpoints, the loop, evaluation;
 //! - [`benchmark`]: what each device makes of each stage;
@@ -31,6 +32,7 @@ pub mod benchmark;
 pub mod gpu;
 pub mod kernels;
 pub mod motion;
+pub mod playback;
 pub mod ppo;
 pub mod report;
 pub mod search;

@@ -4,6 +4,7 @@ use super::Usage;
 use anyhow::{Context, Result};
 use clap::Args;
 use footwork::motion::database::Database;
+use footwork::playback::quality::{Comparison, Quality, compare};
 use footwork::report::table::table;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::controller::{Controller, Scripted, Trained};
@@ -11,12 +12,16 @@ use footwork::train::data;
 use footwork::train::evaluate::{Report, evaluate, hardest};
 use footwork::train::folder::Folder;
 use footwork::train::planner::{Planned, plan};
+use footwork::train::recording::shown;
 use footwork::world::{LEVELS, Task};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Speeds the scripted baseline asks for, m/s.
 const SPEEDS: [f32; 8] = [0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.5, 4.0];
+
+/// Episodes whose motion is judged, at most: some hundred thousand frames.
+const WALKS: usize = 500;
 
 #[derive(Args)]
 pub struct Eval {
@@ -43,6 +48,10 @@ pub struct Eval {
         allow_negative_numbers = true
     )]
     plan: usize,
+    /// Judge the whole body's motion: feet that slide or sink, and what the jumps between pieces of
+    /// motion leave to be seen, with each remedy
+    #[arg(long)]
+    motion: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -83,8 +92,15 @@ impl Eval {
                 baseline.push((speed, hardest(&scripted, &database, task, self.episodes)?));
             }
         }
+        let motion = match self.motion {
+            true => {
+                let walks = shown(&policy, &database, task, self.episodes.min(WALKS))?;
+                Some(compare(&database, &walks))
+            }
+            false => None,
+        };
         match self.json {
-            true => print_json(&trained, &baseline, &levels, planned),
+            true => print_json(&trained, &baseline, &levels, planned, motion),
             false => {
                 println!(
                     "{} at {} steps, {} episodes",
@@ -100,6 +116,9 @@ impl Eval {
                         100.0 * planned.success,
                         planned.episodes
                     );
+                }
+                if let Some(motion) = motion {
+                    print_motion(&motion);
                 }
                 Ok(())
             }
@@ -142,6 +161,7 @@ fn print_json(
     baseline: &[(f32, Report)],
     levels: &[Report],
     planned: Option<Planned>,
+    motion: Option<Comparison>,
 ) -> Result<()> {
     let mut object = serde_json::to_value(trained)?;
     if !baseline.is_empty() {
@@ -170,6 +190,9 @@ fn print_json(
     }
     if let Some(planned) = planned {
         object["planned"] = serde_json::to_value(planned)?;
+    }
+    if let Some(motion) = motion {
+        object["motion"] = serde_json::to_value(motion)?;
     }
     println!("{object}");
     Ok(())
@@ -232,6 +255,41 @@ fn print_table(trained: &Report, baseline: &[(f32, Report)]) {
         baseline
             .iter()
             .map(|(speed, report)| row(format!("straight at {speed} m/s"), report)),
+    );
+    print!("{}", table(&headers, &rows));
+}
+
+fn print_motion(motion: &Comparison) {
+    let styles: [(&str, &Quality); 5] = [
+        ("as recorded, between jumps", &motion.recorded),
+        ("no stitching", &motion.raw),
+        ("simple stitching", &motion.simple),
+        ("stitching", &motion.stitched),
+        ("stitching and foot locking", &motion.locked),
+    ];
+    let headers = [
+        "motion",
+        "skate cm/s",
+        "sunk cm",
+        "deepest cm",
+        "jump cm",
+        "m/s²",
+        "m/s³",
+    ];
+    let rows = styles.map(|(name, quality)| {
+        vec![
+            name.to_string(),
+            format!("{:.2}", quality.foot_skate_cm_s),
+            format!("{:.2}", quality.penetration_mean_cm),
+            format!("{:.1}", quality.penetration_max_cm),
+            format!("{:.2}", quality.jump_cm),
+            format!("{:.1}", quality.acceleration),
+            format!("{:.0}", quality.jerk),
+        ]
+    });
+    println!(
+        "\nthe motion of {} frames with {} jumps; jump, acceleration and jerk at jumps",
+        motion.frames, motion.jumps
     );
     print!("{}", table(&headers, &rows));
 }

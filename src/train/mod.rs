@@ -11,5 +11,6 @@ pub mod milestones;
 pub mod planner;
 pub mod progress;
 pub mod record;
+pub mod recording;
 pub mod trainer;
 pub mod walks;

@@ -31,7 +31,8 @@ pub struct CpuWorld {
     /// `[envs][MAPS][CELLS]`
     pub maps: Vec<u32>,
     queries: Vec<[f32; PADDED]>,
-    matched: Vec<u32>,
+    /// `[envs]`, the candidates that the last step found.
+    pub matched: Vec<u32>,
     /// `[horizon][envs]`
     reward: Vec<f32>,
     /// `[horizon][envs]`, how each step ended.

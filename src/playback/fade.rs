@@ -1,0 +1,65 @@
+//! A difference that fades away.
+
+use glam::Vec3;
+
+/// A difference and its first two rates of change, per frame, at the moment it began to fade.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fade {
+    pub value: Vec3,
+    pub velocity: Vec3,
+    pub acceleration: Vec3,
+}
+
+impl Fade {
+    /// From three values a frame apart; the fading begins at the middle one.
+    pub fn through(before: Vec3, now: Vec3, after: Vec3) -> Fade {
+        Fade {
+            value: now,
+            velocity: 0.5 * (after - before),
+            acceleration: after - 2.0 * now + before,
+        }
+    }
+
+    /// What is left after `age` frames of `frames`: the quintic that begins as given and ends at rest
+    /// (Bollo, "Inertialization", GDC 2018, here for whole vectors).
+    pub fn at(&self, age: f32, frames: f32) -> Vec3 {
+        let s = age / frames;
+        if s >= 1.0 {
+            return Vec3::ZERO;
+        }
+        let (s2, s3, s4, s5) = (s * s, s * s * s, s * s * s * s, s * s * s * s * s);
+        let value = 1.0 - 10.0 * s3 + 15.0 * s4 - 6.0 * s5;
+        let velocity = frames * (s - 6.0 * s3 + 8.0 * s4 - 3.0 * s5);
+        let acceleration = frames * frames * 0.5 * (s2 - 3.0 * s3 + 3.0 * s4 - s5);
+        self.value * value + self.velocity * velocity + self.acceleration * acceleration
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn begins_as_given_and_ends_at_rest() {
+        let fade = Fade {
+            value: Vec3::new(1.0, 0.0, 0.0),
+            velocity: Vec3::new(0.0, 0.1, 0.0),
+            acceleration: Vec3::new(0.0, 0.0, 0.02),
+        };
+        let (step, frames) = (1e-2, 12.0);
+        let slope =
+            |age: f32| (fade.at(age + step, frames) - fade.at(age - step, frames)) / (2.0 * step);
+        let bend = |age: f32| (slope(age + step) - slope(age - step)) / (2.0 * step);
+        assert_eq!(fade.at(0.0, frames), fade.value);
+        assert!((slope(0.0) - fade.velocity).length() < 1e-3);
+        assert!(
+            (bend(0.0) - fade.acceleration).length() < 2e-3,
+            "{}",
+            bend(0.0)
+        );
+        let end = frames - 2.0 * step;
+        for rest in [fade.at(end, frames), slope(end), bend(end)] {
+            assert!(rest.length() < 2e-3, "{rest}");
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Foot locking: a standing foot stays where it came down.
+
+use super::contact::{Contact, Sole};
+use super::fade::Fade;
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// A foot comes down where it is shown if that is no farther than this from where the recording has
+/// it, m; else it steps over there.
+const NEAR: f32 = 0.15;
+/// Frames that such a step takes.
+const STEP: f32 = 5.0;
+/// How high it rises, per metre of its way, and at most, m.
+const LIFT: f32 = 0.3;
+const HIGHEST: f32 = 0.12;
+/// Frames until the correction of a foot that stands no more is gone.
+const RELEASE: f32 = 12.0;
+
+/// One foot's lock.
+#[derive(Clone, Debug, Default)]
+pub struct FootLock {
+    held: Option<Hold>,
+    /// Of what was added to the foot in the last frame and in the one before, m.
+    corrections: [Vec3; 2],
+    /// What is left of the correction of a foot that stands no more, and frames since.
+    fade: Fade,
+    age: f32,
+}
+
+/// A foot that stands, or steps to where it will.
+#[derive(Clone, Copy, Debug)]
+struct Hold {
+    contact: Contact,
+    /// Where the bearing point stands, on the ground, m; its height is the recording's.
+    place: Vec3,
+    /// From there to where it is shown.
+    step: Fade,
+    lift: f32,
+    age: f32,
+}
+
+impl FootLock {
+    /// What to add to the foot's position in the next frame, m: `sole` is where the stitched motion
+    /// puts it, `recorded` where the recording has it.
+    pub fn next(&mut self, sole: &Sole, recorded: &Sole, contact: Contact) -> Vec3 {
+        self.age += 1.0;
+        let correction = match (sole.point(contact), recorded.point(contact)) {
+            (Some(point), Some(recorded)) => self.stand(point, recorded, contact),
+            _ => self.rest(),
+        };
+        self.corrections = [correction, self.corrections[0]];
+        correction
+    }
+
+    fn stand(&mut self, point: Vec3, recorded: Vec3, contact: Contact) -> Vec3 {
+        let near = |hold: &Hold| level(hold.place - recorded).length() <= NEAR;
+        let held = self
+            .held
+            .filter(|hold| hold.contact == contact && near(hold));
+        let mut hold = match held {
+            Some(hold) => hold,
+            None => self.come_down(point, recorded, contact),
+        };
+        let height = Vec3::Y * (recorded.y + hold.lift * (PI * (hold.age / STEP).min(1.0)).sin());
+        let shown = hold.place + height + hold.step.at(hold.age, STEP);
+        hold.age += 1.0;
+        self.held = Some(hold);
+        shown - point
+    }
+
+    /// A foot comes down, or rolls from heel to toe, or the motion has jumped to one in which it stands
+    /// elsewhere.
+    fn come_down(&mut self, point: Vec3, recorded: Vec3, contact: Contact) -> Hold {
+        let shown = point + self.rest();
+        let way = level(shown - recorded);
+        let far = way.length() > NEAR;
+        let place = level(if far { recorded } else { shown });
+        Hold {
+            contact,
+            place,
+            step: Fade {
+                value: shown - place - Vec3::Y * recorded.y,
+                ..Fade::default()
+            },
+            lift: if far {
+                (LIFT * way.length()).min(HIGHEST)
+            } else {
+                0.0
+            },
+            age: 0.0,
+        }
+    }
+
+    /// The correction of a foot that is not held: the one it had when it was let go, fading.
+    fn rest(&mut self) -> Vec3 {
+        if self.held.take().is_some() {
+            self.fade = Fade {
+                value: self.corrections[0],
+                velocity: self.corrections[0] - self.corrections[1],
+                acceleration: Vec3::ZERO,
+            };
+            self.age = 1.0;
+        }
+        self.fade.at(self.age, RELEASE)
+    }
+}
+
+fn level(v: Vec3) -> Vec3 {
+    Vec3::new(v.x, 0.0, v.z)
+}

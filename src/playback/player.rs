@@ -1,0 +1,107 @@
+//! From shown frames to poses.
+
+use super::contact::{Contact, Sole, contacts};
+use super::foot_lock::FootLock;
+use super::leg::{Leg, legs};
+use super::pose::Pose;
+use super::shown::Shown;
+use super::stitch::{Stitch, Stitching};
+use super::two_joint::reach;
+use crate::motion::database::Database;
+use glam::Vec3;
+use std::sync::Arc;
+
+/// What all players of one database share.
+#[derive(Debug)]
+pub struct Feet {
+    pub legs: [Leg; 2],
+    /// Of every frame, left foot first.
+    pub contacts: Vec<[Contact; 2]>,
+}
+
+impl Feet {
+    pub fn of(database: &Database) -> Feet {
+        let legs = legs(database);
+        let contacts = contacts(database, &legs);
+        Feet { legs, contacts }
+    }
+
+    /// Both soles of a pose, left first.
+    pub fn soles(&self, database: &Database, pose: &Pose) -> [Sole; 2] {
+        let (positions, rotations) = pose.world(&database.skeleton);
+        [0, 1].map(|side| Sole::of(&self.legs[side], &positions, &rotations))
+    }
+}
+
+/// How the motion is made presentable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Style {
+    pub stitching: Stitching,
+    pub foot_locking: bool,
+}
+
+impl Style {
+    pub const RAW: Style = Style {
+        stitching: Stitching::None,
+        foot_locking: false,
+    };
+    pub const BEST: Style = Style {
+        stitching: Stitching::Inertialization,
+        foot_locking: true,
+    };
+}
+
+/// Shows one character, frame by frame.
+pub struct Player {
+    database: Arc<Database>,
+    feet: Arc<Feet>,
+    style: Style,
+    shown: Shown,
+    stitch: Stitch,
+    locks: [FootLock; 2],
+}
+
+impl Player {
+    /// A character that begins after `shown`.
+    pub fn new(database: Arc<Database>, feet: Arc<Feet>, style: Style, shown: Shown) -> Self {
+        let stitch = Stitch::new(style.stitching, database.skeleton.joints());
+        Player {
+            database,
+            feet,
+            style,
+            shown,
+            stitch,
+            locks: Default::default(),
+        }
+    }
+
+    /// The pose of the next frame: of the same clip, or of wherever a match has jumped to.
+    pub fn next(&mut self, shown: Shown) -> Pose {
+        self.stitch.pass();
+        if shown.frame != self.shown.frame + 1 {
+            self.stitch.turn(&self.database, self.shown, shown);
+        }
+        self.shown = shown;
+        let mut pose = shown.pose(&self.database);
+        let recorded = self.feet.soles(&self.database, &pose);
+        self.stitch.apply(&mut pose);
+        if self.style.foot_locking {
+            self.lock(&mut pose, &recorded);
+        }
+        pose
+    }
+
+    /// Holds the standing feet, and keeps both above the ground.
+    fn lock(&mut self, pose: &mut Pose, recorded: &[Sole; 2]) {
+        let skeleton = &self.database.skeleton;
+        let (positions, rotations) = pose.world(skeleton);
+        for (side, leg) in self.feet.legs.iter().enumerate() {
+            let sole = Sole::of(leg, &positions, &rotations);
+            let contact = self.feet.contacts[self.shown.frame][side];
+            let held = self.locks[side].next(&sole, &recorded[side], contact);
+            let sunk = -held.y - sole.heel.y.min(sole.toe.y);
+            let lifted = Vec3::Y * sunk.max(0.0);
+            reach(skeleton, pose, leg, positions[leg.foot] + held + lifted);
+        }
+    }
+}
