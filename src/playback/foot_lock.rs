@@ -7,9 +7,9 @@ use std::f32::consts::PI;
 
 /// A foot comes down where it is shown if that is no farther than this from where the recording has
 /// it, m; else it steps over there.
-const NEAR: f32 = 0.15;
+const NEAR: f32 = 0.35;
 /// Frames that such a step takes.
-const STEP: f32 = 5.0;
+const STEP: f32 = 3.0;
 /// How high it rises, per metre of its way, and at most, m.
 const LIFT: f32 = 0.3;
 const HIGHEST: f32 = 0.12;
@@ -37,6 +37,8 @@ struct Hold {
     step: Fade,
     lift: f32,
     age: f32,
+    /// Where it was shown last, m.
+    shown: Vec3,
 }
 
 impl FootLock {
@@ -63,7 +65,7 @@ impl FootLock {
         };
         let height = Vec3::Y * (recorded.y + hold.lift * (PI * (hold.age / STEP).min(1.0)).sin());
         let shown = hold.place + height + hold.step.at(hold.age, STEP);
-        hold.age += 1.0;
+        (hold.age, hold.shown) = (hold.age + 1.0, shown);
         self.held = Some(hold);
         shown - point
     }
@@ -71,7 +73,10 @@ impl FootLock {
     /// A foot comes down, or rolls from heel to toe, or the motion has jumped to one in which it stands
     /// elsewhere.
     fn come_down(&mut self, point: Vec3, recorded: Vec3, contact: Contact) -> Hold {
-        let shown = point + self.rest();
+        let shown = match self.held {
+            Some(hold) if hold.contact == contact => hold.shown,
+            _ => point + self.rest(),
+        };
         let way = level(shown - recorded);
         let far = way.length() > NEAR;
         let place = level(if far { recorded } else { shown });
@@ -82,6 +87,7 @@ impl FootLock {
                 value: shown - place - Vec3::Y * recorded.y,
                 ..Fade::default()
             },
+            shown,
             lift: if far {
                 (LIFT * way.length()).min(HIGHEST)
             } else {

@@ -7,7 +7,7 @@ use glam::{Quat, Vec3};
 
 /// From this share of its length on, a leg is stretched ever more slowly, so that the knee does not
 /// snap straight.
-const SOFT: f32 = 0.97;
+const SOFT: f32 = 0.985;
 /// Knees bent less than this (as a sine) take their axis from the leg, not from the pose.
 const STRAIGHT: f32 = 0.2;
 
