@@ -41,6 +41,16 @@ fn a_run_among_obstacles_shows_its_levels_and_its_walks() {
     assert_eq!(levels[9]["success"], judged["success"]);
     assert!(keys(&judged).contains(&"time_to_target_p95_s"));
 
+    let told = place.done("eval run --episodes 5 --motion --json");
+    let judged: Value = serde_json::from_str(&told.out).unwrap();
+    for style in ["recorded", "raw", "simple", "stitched", "locked"] {
+        let quality = &judged["motion"][style];
+        assert!(quality["foot_skate_cm_s"].is_number(), "{style}: {quality}");
+        assert!(quality["jerk"].is_number(), "{style}: {quality}");
+    }
+    let told = place.done("eval run --episodes 5 --motion");
+    assert!(told.out.contains("stitching and foot locking"));
+
     let told = place.done("eval run --episodes 20 --baseline");
     assert!(told.out.contains("level") && told.out.contains("straight at 4 m/s"));
 }
