@@ -84,14 +84,12 @@ fn writable(file: &Path) -> Result<()> {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
-    if file.is_dir() || !folder.is_dir() {
-        let why = format!(
-            "{} is no place for a file: its folder must exist",
-            file.display()
-        );
-        return Err(Usage(why).into());
-    }
-    Ok(())
+    let why = match (file.is_dir(), folder.is_dir()) {
+        (true, _) => "it is a folder; give the name of a file in it",
+        (_, false) => "its folder must exist",
+        _ => return Ok(()),
+    };
+    Err(Usage(format!("{} is no place for a file: {why}", file.display())).into())
 }
 
 fn shown(rows: &[Row]) -> String {

@@ -269,6 +269,7 @@ fn print_motion(motion: &Comparison) {
     ];
     let headers = [
         "motion",
+        "standing %",
         "skate cm/s",
         "sunk cm",
         "deepest cm",
@@ -279,6 +280,7 @@ fn print_motion(motion: &Comparison) {
     let rows = styles.map(|(name, quality)| {
         vec![
             name.to_string(),
+            format!("{:.1}", 100.0 * quality.standing),
             format!("{:.2}", quality.foot_skate_cm_s),
             format!("{:.2}", quality.penetration_mean_cm),
             format!("{:.1}", quality.penetration_max_cm),

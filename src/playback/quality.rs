@@ -15,6 +15,9 @@ const AIR: f32 = 0.02;
 /// Of shown frames; "recorded" is what lies between two jumps, before anything was done to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Quality {
+    /// Share of feet that stand on, from one frame to the next; the skate is theirs. A foot that is
+    /// lifted to step elsewhere does not stand.
+    pub standing: f64,
     /// Ground speed of the bearing point of a standing foot, mean, cm/s.
     pub foot_skate_cm_s: f64,
     /// Depth of the lowest point of a sole below the ground, mean over all frames and most, cm.
@@ -175,6 +178,7 @@ impl Sums {
         let rate = f64::from(RATE);
         let mean = |sum: f64, count: usize| sum / count.max(1) as f64;
         Quality {
+            standing: mean(self.standing as f64, 2 * self.frames),
             foot_skate_cm_s: 100.0 * rate * mean(self.skate, self.standing),
             penetration_mean_cm: 100.0 * mean(self.depth, 2 * self.frames),
             penetration_max_cm: 100.0 * self.deepest,
