@@ -14,10 +14,14 @@ fn main() {
     let mut files = Vec::new();
     collect(root, &mut files);
     files.sort();
-    let shared = root.join("shared");
+    let (shared, view) = (root.join("shared"), root.join("view"));
     let mut generated = String::new();
     for file in files.iter().filter(|file| !file.starts_with(&shared)) {
-        match reflect(root, file) {
+        let code = match file.starts_with(&view) {
+            true => drawing(root, file),
+            false => reflect(root, file),
+        };
+        match code {
             Ok(code) => generated += &code,
             Err(message) => {
                 for line in message.lines() {
@@ -76,11 +80,27 @@ fn expand(
     }
 }
 
-fn reflect(root: &Path, file: &Path) -> Result<String, String> {
-    let name = file
-        .file_stem()
-        .and_then(|stem| stem.to_str())
-        .expect("shader names are ASCII");
+fn name(file: &Path) -> &str {
+    let stem = file.file_stem().and_then(|stem| stem.to_str());
+    stem.expect("shader names are ASCII")
+}
+
+/// A shader that draws: `static DRAW_NAME: &str`, with the entry points `place` and `paint`.
+fn drawing(root: &Path, file: &Path) -> Result<String, String> {
+    let (source, module) = validated(root, file)?;
+    let entries = module.entry_points.iter().map(|entry| &entry.name[..]);
+    if entries.ne(["place", "paint"]) {
+        let file = file.display();
+        return Err(format!(
+            "{file}: its entry points must be `place` and `paint`"
+        ));
+    }
+    let upper = name(file).to_uppercase();
+    Ok(format!("pub static DRAW_{upper}: &str = {source:?};\n"))
+}
+
+/// The expanded text, parsed and found right.
+fn validated(root: &Path, file: &Path) -> Result<(String, naga::Module), String> {
     let (mut source, mut from) = (String::new(), Origins::new());
     expand(root, file, &mut Vec::new(), &mut source, &mut from);
     let place = |line: u32| {
@@ -97,6 +117,13 @@ fn reflect(root: &Path, file: &Path) -> Result<String, String> {
             let line = error.location(&source).map_or(1, |at| at.line_number);
             format!("{}: {}", place(line), error.emit_to_string(&source))
         })?;
+    Ok((source, module))
+}
+
+/// A compute shader: what `describe` says of its only entry point.
+fn reflect(root: &Path, file: &Path) -> Result<String, String> {
+    let (source, module) = validated(root, file)?;
+    let name = name(file);
     let [entry] = &module.entry_points[..] else {
         return Err(format!("{}: one entry point a file", file.display()));
     };

@@ -24,6 +24,7 @@
 //! - [`playback`]: the whole body of a walk: stitching, foot locking, and how good it looks;
 //! - [`ppo`]: policy, rollout, update;
 //! - [`train`]: configuration, run folder, checkpoints, the loop, evaluation;
+//! - [`view`]: scenes, and the renderer that draws them on the GPU or on lavapipe;
 //! - [`benchmark`]: what each device makes of each stage;
 //! - [`report`]: pictures, TensorBoard events, tables;
 //! - [`store`] and [`tensors`]: files and tensors as plain arrays.
@@ -39,4 +40,5 @@ pub mod search;
 pub mod store;
 pub mod tensors;
 pub mod train;
+pub mod view;
 pub mod world;

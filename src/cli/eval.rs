@@ -1,16 +1,15 @@
 //! `footwork eval`.
 
 use super::Usage;
-use anyhow::{Context, Result};
+use super::run::{locate, motion};
+use anyhow::Result;
 use clap::Args;
 use footwork::motion::database::Database;
 use footwork::playback::quality::{Comparison, Quality, compare};
 use footwork::report::table::table;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::controller::{Controller, Scripted, Trained};
-use footwork::train::data;
 use footwork::train::evaluate::{Report, evaluate, hardest};
-use footwork::train::folder::Folder;
 use footwork::train::planner::{Planned, plan};
 use footwork::train::recording::shown;
 use footwork::world::{LEVELS, Task};
@@ -27,6 +26,9 @@ const WALKS: usize = 500;
 pub struct Eval {
     /// A run's folder, whose last checkpoint is judged, or one of its checkpoints
     run: PathBuf,
+    /// Where the run's motion is now, if it has been moved
+    #[arg(long, value_name = "DIR|FILE")]
+    data: Option<PathBuf>,
     /// Episodes, the same ones for every policy
     #[arg(
         long,
@@ -62,15 +64,15 @@ impl Eval {
         if self.episodes == 0 || self.episodes > 1_000_000 {
             return Err(Usage("--episodes must be from 1 to 1000000".into()).into());
         }
-        let (folder, path) = self.locate()?;
+        let (folder, path) = locate(&self.run)?;
         let config = folder.read_config()?;
         if self.plan > 0 && matches!(config.task, Task::Plane(_)) {
             let why = "--plan is for runs among obstacles: on the plane nothing is in the way";
             return Err(Usage(why.into()).into());
         }
-        let (database, _) = data::load(config.data.as_deref(), config.weights)?;
+        let database = motion(&config, self.data.as_deref())?;
         let checkpoint = Checkpoint::load_for(&path, &config.task, database.fingerprint)?;
-        let (database, task) = (Arc::new(database), checkpoint.header.task);
+        let task = checkpoint.header.task;
         let policy = Trained::from(&checkpoint);
         let levels = match task {
             Task::Plane(_) => Vec::new(),
@@ -123,24 +125,6 @@ impl Eval {
                 Ok(())
             }
         }
-    }
-
-    /// The run's folder, and the checkpoint: the given one or the last.
-    fn locate(&self) -> Result<(Folder, PathBuf)> {
-        if self.run.is_file() {
-            let whole = std::path::absolute(&self.run)?;
-            let folder = whole.ancestors().nth(2).map(Folder::open);
-            let folder = folder.and_then(Result::ok).with_context(|| {
-                format!(
-                    "{} does not lie in the checkpoints of a run: give a run's folder, or one of its checkpoints where it was written",
-                    self.run.display()
-                )
-            })?;
-            return Ok((folder, self.run.clone()));
-        }
-        let folder = Folder::open(&self.run)?;
-        let last = folder.last()?;
-        Ok((folder, last))
     }
 }
 

@@ -4,6 +4,8 @@ mod ablate;
 mod bench;
 mod data;
 mod eval;
+mod render;
+mod run;
 mod train;
 
 use anyhow::Result;
@@ -29,6 +31,8 @@ enum Command {
     Ablate(ablate::Ablate),
     /// Judge a trained policy on a fixed set of episodes
     Eval(eval::Eval),
+    /// Draw what a trained policy does, to files
+    Render(render::Render),
     /// Measure what each device makes of each stage
     Bench(bench::Bench),
     /// Import, synthesise and inspect motion
@@ -46,6 +50,7 @@ pub fn run() -> Result<()> {
         Command::Train(task) => task.run(),
         Command::Ablate(ablate) => ablate.run(),
         Command::Eval(eval) => eval.run(),
+        Command::Render(render) => render.run(),
         Command::Bench(bench) => bench.run(),
         Command::Data(data) => data.run(),
     }

@@ -1,7 +1,7 @@
 //! Which adapter or processor runs the program.
 
 use super::tensor;
-use burn::tensor::wgpu::{MemoryConfiguration, WgpuBackend, WgpuInitError};
+use burn::tensor::wgpu::{MemoryConfiguration, WgpuBackend, WgpuInitError, WgpuSetup};
 use burn::tensor::{Device as TensorDevice, DeviceKind};
 use clap::ValueEnum;
 use cubecl::client::Client;
@@ -46,6 +46,8 @@ pub struct Gpu {
     pub(super) client: Client,
     pub(super) cube: burn_cubecl::CubeDevice,
     tensors: TensorDevice,
+    /// What burn runs on, for whoever draws on the same device.
+    pub setup: WgpuSetup,
     /// The adapter's own name.
     pub name: String,
     /// Bytes a kernel can reach in one buffer.
@@ -141,6 +143,15 @@ impl Gpu {
         first.ok_or(NoAdapter { wanted: "GPU" })
     }
 
+    /// To draw on: a real GPU, else lavapipe.
+    pub fn drawing() -> Result<Self, NoAdapter> {
+        Self::real()
+            .or_else(|_| Self::lavapipe())
+            .map_err(|_| NoAdapter {
+                wanted: "graphics adapter to draw with",
+            })
+    }
+
     /// Mesa's software rasteriser. On Vulkan only: through OpenGL it is ten times slower.
     pub fn lavapipe() -> Result<Self, NoAdapter> {
         Self::shared(DeviceKind::Cpu, WgpuBackend::Vulkan).map_err(|_| NoAdapter {
@@ -177,6 +188,7 @@ impl Gpu {
             client,
             cube,
             tensors,
+            setup,
             name,
             binding,
             software,

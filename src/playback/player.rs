@@ -52,6 +52,7 @@ impl Style {
 }
 
 /// Shows one character, frame by frame.
+#[derive(Clone)]
 pub struct Player {
     database: Arc<Database>,
     feet: Arc<Feet>,

@@ -233,21 +233,29 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |sum, value| sum + value) / values.len().max(1) as f64
 }
 
-/// Moves one character's target to a random place of the task's square around it, at least 2 m
-/// (or two fifths of the square's half side) away, so that there is something to turn to.
-fn send_elsewhere(world: &mut CpuWorld, env: usize) {
+/// Moves one character's target to a random place of the task's square, at least 2 m (or two fifths
+/// of the square's half side) away, so that there is something to turn to. On the plane the square
+/// lies around the character; obstacles have their own, and the target stands clear of them.
+pub fn send_elsewhere(world: &mut CpuWorld, env: usize) {
     const STREAM: u32 = 0x5455_524e;
     let (envs, half_side) = (world.rules.envs, world.rules.task.half_side(LEVELS - 1));
+    let at = [real::X, real::Z].map(|field| world.field(field, env));
+    let centre = match world.rules.task {
+        Task::Plane(_) => at,
+        Task::Obstacles(_) => [0.0; 2],
+    };
     // Keyed by where it stands, which does not change when others leave the batch.
-    let key = world.field(real::X, env).to_bits();
-    let bits = (0..).map(|draw| random4(EPISODES_SEED, key, draw, STREAM));
-    let places =
-        bits.map(|bits| [bits[0], bits[1]].map(|b| (2.0 * uniform01(b) - 1.0) * half_side));
+    let bits = (0..).map(|draw| random4(EPISODES_SEED, at[0].to_bits(), draw, STREAM));
+    let places = bits.map(|bits| {
+        let [x, z] = [bits[0], bits[1]].map(|b| (2.0 * uniform01(b) - 1.0) * half_side);
+        [centre[0] + x, centre[1] + z]
+    });
     let least = (half_side * 0.4).min(2.0);
+    let far = |place: &[f32; 2]| (place[0] - at[0]).hypot(place[1] - at[1]) >= least;
     let place = places
         .take(64)
-        .find(|[x, z]| x.hypot(*z) >= least)
-        .unwrap_or([half_side; 2]);
-    world.real[real::TARGET_X * envs + env] = world.field(real::X, env) + place[0];
-    world.real[real::TARGET_Z * envs + env] = world.field(real::Z, env) + place[1];
+        .find(|place| far(place) && !world.blocked(env, *place))
+        .unwrap_or(centre.map(|c| c + half_side));
+    world.real[real::TARGET_X * envs + env] = place[0];
+    world.real[real::TARGET_Z * envs + env] = place[1];
 }

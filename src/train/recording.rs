@@ -40,7 +40,7 @@ pub fn shown(
 }
 
 /// The frame that a character shows, and where.
-fn standing(world: &CpuWorld, env: usize) -> Shown {
+pub fn standing(world: &CpuWorld, env: usize) -> Shown {
     Shown {
         frame: world.whole[whole::FRAME * world.rules.envs + env] as usize,
         at: [real::X, real::Z].map(|field| world.field(field, env)),

@@ -3,6 +3,7 @@
 use super::rules::Rules;
 use super::{Setup, Snapshot, Values, World};
 use crate::kernels::layout::{AXES, CELLS, MAPS, boxes, real, whole};
+use crate::kernels::obstacles::inside;
 use crate::kernels::{
     act, collide, gae, hits, observe, query, reset, scatter, sense, step, tally, wander,
 };
@@ -30,7 +31,8 @@ pub struct CpuWorld {
     pub drift: Vec<f32>,
     /// `[envs][MAPS][CELLS]`
     pub maps: Vec<u32>,
-    queries: Vec<[f32; PADDED]>,
+    /// `[envs]`, what the last step asked.
+    pub queries: Vec<[f32; PADDED]>,
     /// `[envs]`, the candidates that the last step found.
     pub matched: Vec<u32>,
     /// `[horizon][envs]`
@@ -173,6 +175,20 @@ impl CpuWorld {
     /// One number of the floating-point state.
     pub fn field(&self, field: usize, env: usize) -> f32 {
         self.real[field * self.rules.envs + env]
+    }
+
+    /// An obstacle of an environment: centre and half sides, m.
+    pub fn obstacle(&self, env: usize, slot: usize) -> [f32; boxes::FIELDS] {
+        let count = self.rules.task.obstacles();
+        std::array::from_fn(|field| self.boxes[(env * boxes::FIELDS + field) * count + slot])
+    }
+
+    /// Whether a point lies in an obstacle of an environment.
+    pub fn blocked(&self, env: usize, point: [f32; 2]) -> bool {
+        (0..self.rules.task.obstacles()).any(|slot| {
+            let [x, z, half_x, half_z] = self.obstacle(env, slot);
+            inside(point, [x, z], [half_x, half_z])
+        })
     }
 
     /// Goes on with these environments alone; one may be named several times.

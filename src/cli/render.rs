@@ -1,0 +1,249 @@
+//! `footwork render`.
+
+use super::Usage;
+use super::run::Run;
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+use footwork::gpu::Gpu;
+use footwork::playback::player::Style;
+use footwork::playback::stitch::Stitching;
+use footwork::train::controller::Trained;
+use footwork::view::film::{self, Output};
+use footwork::view::marks::scene;
+use footwork::view::rollout::{Rollout, Stage};
+use footwork::view::{Camera, Canvas, Renderer};
+use indicatif::ProgressIterator;
+use std::path::PathBuf;
+
+/// Frames of the motion a second.
+const RATE: u32 = 30;
+/// How quickly the camera follows, a share a frame.
+const FOLLOW: f32 = 0.08;
+
+#[derive(Args)]
+pub struct Render {
+    /// A run's folder, whose last checkpoint is shown, or one of its checkpoints
+    run: PathBuf,
+    /// FILE.png for one picture, FILE.gif for an animation, a folder's name for PNG frames
+    #[arg(short, long, value_name = "FILE|DIR")]
+    output: PathBuf,
+    /// Write over what is there
+    #[arg(long)]
+    force: bool,
+    /// Where the run's motion is now, if it has been moved
+    #[arg(long, value_name = "DIR|FILE")]
+    data: Option<PathBuf>,
+    /// Which of the evaluation's episodes
+    #[arg(
+        long,
+        default_value_t = 0,
+        value_name = "N",
+        allow_negative_numbers = true
+    )]
+    episode: usize,
+    /// When to begin, s; a single picture is of this moment
+    #[arg(
+        long,
+        default_value_t = 0.8,
+        value_name = "SECONDS",
+        allow_negative_numbers = true
+    )]
+    at: f32,
+    /// Length of an animation, s
+    #[arg(
+        long,
+        default_value_t = 6.0,
+        value_name = "SECONDS",
+        allow_negative_numbers = true
+    )]
+    seconds: f32,
+    /// Pictures a second of an animation: 30 or a whole part of it
+    #[arg(long, default_value_t = RATE, value_name = "N", allow_negative_numbers = true)]
+    rate: u32,
+    /// Pixels
+    #[arg(long, default_value = "640x360", value_name = "WIDTHxHEIGHT", value_parser = size, allow_hyphen_values = true)]
+    size: [u32; 2],
+    /// Turn of the camera around the character, degrees
+    #[arg(
+        long,
+        default_value_t = 40.0,
+        value_name = "DEGREES",
+        allow_negative_numbers = true
+    )]
+    yaw: f32,
+    /// Height of the camera, degrees above the ground
+    #[arg(
+        long,
+        default_value_t = 16.0,
+        value_name = "DEGREES",
+        allow_negative_numbers = true
+    )]
+    pitch: f32,
+    /// From the camera to the character, m
+    #[arg(
+        long,
+        default_value_t = 5.5,
+        value_name = "METRES",
+        allow_negative_numbers = true
+    )]
+    distance: f32,
+    /// How the pieces of motion are joined
+    #[arg(long, value_enum, default_value_t = Joined::Smooth)]
+    joined: Joined,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Joined {
+    /// Not at all: the pose jumps at every match
+    Not,
+    /// The paper's simple stitching, feet locked
+    Simple,
+    /// Inertialization, feet locked
+    Smooth,
+}
+
+impl Joined {
+    fn style(self) -> Style {
+        match self {
+            Joined::Not => Style::RAW,
+            Joined::Simple => Style {
+                stitching: Stitching::Simple,
+                ..Style::BEST
+            },
+            Joined::Smooth => Style::BEST,
+        }
+    }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let numbers = text.split_once('x');
+    let numbers = numbers.and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    match numbers {
+        Some(size) if size.iter().all(|side| (16..=8192).contains(side)) => Ok(size),
+        _ => Err("two numbers of pixels from 16 to 8192, like 640x360".into()),
+    }
+}
+
+impl Render {
+    pub fn run(self) -> Result<()> {
+        let output = self.check()?;
+        let run = Run::open(&self.run, self.data.as_deref())?;
+        let gpu = Gpu::drawing()?;
+        let stage = Stage::new(
+            run.database,
+            run.checkpoint.header.task,
+            self.joined.style(),
+        );
+        let mut film = Film {
+            rollout: Rollout::new(&stage, self.episode),
+            policy: Trained::from(&run.checkpoint),
+            stage,
+            camera: Camera {
+                yaw: self.yaw.to_radians(),
+                pitch: self.pitch.to_radians(),
+                distance: self.distance,
+                ..Camera::default()
+            },
+            renderer: Renderer::new(&gpu),
+            canvas: Canvas::new(&gpu.setup.device, self.size),
+        };
+        film.camera.follow(film.rollout.shown.at, 1.0);
+        film.skip((self.at * RATE as f32).round() as usize)?;
+        let count = ((self.seconds * self.rate as f32).round() as usize).max(1);
+        let between = (RATE / self.rate) as usize;
+        match &output {
+            Output::Png(path) => film::png(path, self.size, &film.picture()?)?,
+            Output::Gif(path) => {
+                let mut frames = Vec::with_capacity(count);
+                for _ in (0..count).progress() {
+                    frames.push(film.picture()?);
+                    film.skip(between)?;
+                }
+                film::gif(path, self.size, self.rate, &frames)?;
+            }
+            Output::Folder(path) => {
+                std::fs::create_dir_all(path)
+                    .with_context(|| format!("cannot make the folder {}", path.display()))?;
+                for number in (0..count).progress() {
+                    film::png(&film::frame(path, number), self.size, &film.picture()?)?;
+                    film.skip(between)?;
+                }
+            }
+        }
+        println!("{}", output.path().display());
+        Ok(())
+    }
+
+    /// Refuses what cannot be before anything is opened.
+    fn check(&self) -> Result<Output> {
+        let usage = |why: &str| Err(Usage(why.into()).into());
+        let Some(output) = Output::of(&self.output) else {
+            return usage(
+                "--output must end in .png or .gif, or be a folder's name without an ending",
+            );
+        };
+        if !(0.0..=3600.0).contains(&self.at) {
+            return usage("--at must be from 0 to 3600 seconds");
+        }
+        if !(self.seconds > 0.0 && self.seconds <= 600.0) {
+            return usage("--seconds must be over 0 and at most 600");
+        }
+        if self.rate == 0 || RATE % self.rate != 0 {
+            return usage("--rate must be 30 or divide it: 15, 10, 6, 5, 3, 2 or 1");
+        }
+        if !(-360.0..=360.0).contains(&self.yaw) {
+            return usage("--yaw must be from -360 to 360 degrees");
+        }
+        if !(1.0..=89.0).contains(&self.pitch) {
+            return usage("--pitch must be from 1 to 89 degrees");
+        }
+        if !(0.5..=200.0).contains(&self.distance) {
+            return usage("--distance must be from 0.5 to 200 metres");
+        }
+        if self.episode >= 1000 {
+            return usage("--episode must be from 0 to 999");
+        }
+        let path = output.path();
+        if path.exists() && !self.force {
+            bail!("{} exists: give --force to write over it", path.display());
+        }
+        if path.exists() && path.is_dir() != matches!(output, Output::Folder(_)) {
+            bail!("{} is in the way: choose another --output", path.display());
+        }
+        if let Some(folder) = path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty())
+            && !folder.is_dir()
+        {
+            bail!("there is no folder {}", folder.display());
+        }
+        Ok(output)
+    }
+}
+
+/// A rollout before a camera.
+struct Film {
+    stage: Stage,
+    policy: Trained,
+    rollout: Rollout,
+    camera: Camera,
+    renderer: Renderer,
+    canvas: Canvas,
+}
+
+impl Film {
+    fn skip(&mut self, frames: usize) -> Result<()> {
+        for _ in 0..frames {
+            self.rollout.advance(&self.stage, &self.policy)?;
+            self.camera.follow(self.rollout.shown.at, FOLLOW);
+        }
+        Ok(())
+    }
+
+    fn picture(&mut self) -> Result<Vec<u8>> {
+        let scene = scene(&self.rollout, &self.stage);
+        self.renderer.draw(&scene, &self.camera, &self.canvas);
+        self.canvas
+            .read(&self.renderer.device, &self.renderer.queue)
+    }
+}

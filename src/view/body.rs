@@ -1,0 +1,228 @@
+//! A skeleton's flesh: capsules between its joints, thick where a person is.
+
+use super::scene::{Colour, Scene};
+use crate::motion::roles::Roles;
+use crate::motion::skeleton::Skeleton;
+use crate::playback::Pose;
+use glam::{Quat, Vec3};
+
+/// Left limbs are blue and right ones orange: a mirrored or crossed leg shows at once.
+const LEFT: Colour = [0.10, 0.30, 0.68];
+const RIGHT: Colour = [0.85, 0.30, 0.06];
+const TRUNK: Colour = [0.62, 0.64, 0.68];
+/// From the top of the thigh to the ankle of the person whose radii are given here, m.
+const LEG: f32 = 0.83;
+
+/// A point that moves with a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Spot {
+    joint: usize,
+    /// In the joint's frame, m.
+    offset: Vec3,
+    /// m
+    radius: f32,
+}
+
+/// A capsule between two such points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bone {
+    ends: [Spot; 2],
+    colour: Colour,
+}
+
+/// All capsules of a body.
+#[derive(Clone, Debug)]
+pub struct Body {
+    pub bones: Vec<Bone>,
+}
+
+/// Which part of a person a bone belongs to, by the joint at its lower end.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    /// How many joints below the top of the limb.
+    Leg(usize),
+    Arm(usize),
+    Spine,
+    /// Collar bones.
+    Collar,
+    /// How many joints above the chest.
+    Head(usize),
+}
+
+impl Body {
+    pub fn of(skeleton: &Skeleton, roles: &Roles) -> Body {
+        let scale = skeleton.reach(roles.left_hip, roles.left_foot) / LEG;
+        let anatomy = Anatomy {
+            skeleton,
+            roles,
+            scale,
+        };
+        Body {
+            bones: anatomy.bones(),
+        }
+    }
+
+    /// Adds a body to a scene.
+    pub fn draw(&self, scene: &mut Scene, skeleton: &Skeleton, pose: &Pose) {
+        let (positions, rotations) = pose.world(skeleton);
+        for bone in &self.bones {
+            let [a, b] = bone.ends.map(|spot| spot.place(&positions, &rotations));
+            let [from, to] = bone.ends.map(|spot| spot.radius);
+            scene.capsule(a, from, b, to, bone.colour);
+        }
+    }
+}
+
+impl Spot {
+    fn place(&self, positions: &[Vec3], rotations: &[Quat]) -> Vec3 {
+        positions[self.joint] + rotations[self.joint] * self.offset
+    }
+}
+
+struct Anatomy<'a> {
+    skeleton: &'a Skeleton,
+    roles: &'a Roles,
+    scale: f32,
+}
+
+impl Anatomy<'_> {
+    fn bones(&self) -> Vec<Bone> {
+        let mut bones = self.trunk();
+        let parents = self.skeleton.parents.iter().enumerate();
+        for (joint, parent) in parents.filter_map(|(joint, parent)| Some((joint, (*parent)?))) {
+            bones.extend(self.bone(joint, parent, Vec3::ZERO));
+        }
+        for &(joint, offset) in &self.skeleton.ends {
+            bones.extend(self.bone(joint, joint, offset));
+        }
+        bones
+    }
+
+    /// The capsule that ends at `joint`, or at a leaf bone's tip `offset` from it.
+    fn bone(&self, joint: usize, from: usize, offset: Vec3) -> Option<Bone> {
+        let tip = usize::from(joint == from);
+        let radii = match self.part(joint) {
+            // The trunk fills in what lies between the hips and the limbs.
+            Part::Leg(0) | Part::Arm(0) => return None,
+            Part::Leg(depth) => match depth + tip {
+                1 => [0.085, 0.058],
+                2 => [0.058, 0.040],
+                3 => [0.044, 0.034],
+                _ => [0.034, 0.026],
+            },
+            Part::Arm(depth) => match depth + tip {
+                1 => [0.050, 0.040],
+                2 => [0.040, 0.030],
+                3 => [0.034, 0.028],
+                _ => [0.014, 0.010],
+            },
+            Part::Spine => [0.10, 0.10],
+            Part::Collar => return None,
+            Part::Head(depth) => match depth + tip {
+                0 | 1 => [0.055, 0.050],
+                _ => [0.075, 0.088],
+            },
+        };
+        let [a, b] = radii.map(|radius| self.scale * radius);
+        Some(self.between(
+            Spot {
+                joint: from,
+                offset: Vec3::ZERO,
+                radius: a,
+            },
+            Spot {
+                joint,
+                offset,
+                radius: b,
+            },
+        ))
+    }
+
+    /// Pelvis, flanks and shoulders, which no single bone of a skeleton is as wide as.
+    fn trunk(&self) -> Vec<Bone> {
+        let roles = self.roles;
+        let spot = |joint, radius: f32| Spot {
+            joint,
+            offset: Vec3::ZERO,
+            radius: self.scale * radius,
+        };
+        vec![
+            self.between(spot(roles.left_hip, 0.095), spot(roles.right_hip, 0.095)),
+            self.between(
+                spot(roles.left_shoulder, 0.062),
+                spot(roles.right_shoulder, 0.062),
+            ),
+            self.between(
+                spot(roles.left_hip, 0.085),
+                spot(roles.left_shoulder, 0.062),
+            ),
+            self.between(
+                spot(roles.right_hip, 0.085),
+                spot(roles.right_shoulder, 0.062),
+            ),
+        ]
+    }
+
+    fn between(&self, a: Spot, b: Spot) -> Bone {
+        Bone {
+            ends: [a, b],
+            colour: self.colour(a.joint, b.joint),
+        }
+    }
+
+    fn colour(&self, a: usize, b: usize) -> Colour {
+        let side = |joint| {
+            let limb = |tops: [usize; 2]| tops.iter().any(|&top| self.below(joint, top).is_some());
+            match (
+                limb([self.roles.left_hip, self.roles.left_shoulder]),
+                limb([self.roles.right_hip, self.roles.right_shoulder]),
+            ) {
+                (true, _) => LEFT,
+                (_, true) => RIGHT,
+                _ => TRUNK,
+            }
+        };
+        let flank = self.part(a) == Part::Leg(0) && self.part(b) == Part::Arm(0);
+        match side(a) == side(b) && !flank {
+            true => side(b),
+            false => TRUNK,
+        }
+    }
+
+    fn part(&self, joint: usize) -> Part {
+        let depth = |tops: [usize; 2]| tops.iter().find_map(|&top| self.below(joint, top));
+        let (legs, arms) = (
+            [self.roles.left_hip, self.roles.right_hip],
+            [self.roles.left_shoulder, self.roles.right_shoulder],
+        );
+        if let Some(depth) = depth(legs) {
+            return Part::Leg(depth);
+        }
+        if let Some(depth) = depth(arms) {
+            return Part::Arm(depth);
+        }
+        let chest = self.chest();
+        if self.below(chest, joint).is_some() {
+            return Part::Spine;
+        }
+        if arms.iter().any(|&top| self.below(top, joint).is_some()) {
+            return Part::Collar;
+        }
+        self.below(joint, chest).map_or(Part::Spine, Part::Head)
+    }
+
+    /// The lowest joint above both shoulders.
+    fn chest(&self) -> usize {
+        let shoulders = [self.roles.left_shoulder, self.roles.right_shoulder];
+        let above =
+            std::iter::successors(Some(shoulders[0]), |&joint| self.skeleton.parents[joint]);
+        let mut above = above.filter(|&joint| self.below(shoulders[1], joint).is_some());
+        above.next().unwrap_or(0)
+    }
+
+    /// How many joints `low` hangs below `high`: 0 if they are the same, `None` if it does not.
+    fn below(&self, low: usize, high: usize) -> Option<usize> {
+        let mut above = std::iter::successors(Some(low), |&joint| self.skeleton.parents[joint]);
+        above.position(|joint| joint == high)
+    }
+}

@@ -1,0 +1,114 @@
+//! Where the scene is seen from.
+
+use glam::camera::rh::proj::directx::perspective;
+use glam::camera::rh::view::look_at_mat4;
+use glam::{Mat4, Vec2, Vec3};
+
+/// Height of the picture as an angle, rad.
+const FIELD: f32 = 0.62;
+const NEAR: f32 = 0.05;
+const FAR: f32 = 600.0;
+/// Pitches that keep the eye above the ground and off the pole, rad.
+pub const PITCH: [f32; 2] = [0.02, 1.55];
+/// Distances, m.
+pub const DISTANCE: [f32; 2] = [0.5, 200.0];
+
+/// A camera on a sphere around the point it looks at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// m
+    pub focus: Vec3,
+    /// Turn of the eye around the vertical; 0 sees the focus from its +z, rad.
+    pub yaw: f32,
+    /// Height of the eye as an angle, rad.
+    pub pitch: f32,
+    /// m
+    pub distance: f32,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Camera {
+            focus: Vec3::new(0.0, 0.85, 0.0),
+            yaw: 0.7,
+            pitch: 0.28,
+            distance: 5.5,
+        }
+    }
+}
+
+impl Camera {
+    pub fn eye(&self) -> Vec3 {
+        let (up, out) = self.pitch.sin_cos();
+        let (x, z) = self.yaw.sin_cos();
+        self.focus + self.distance * Vec3::new(out * x, up, out * z)
+    }
+
+    /// World to clip space, for a picture `aspect` times as wide as high.
+    pub fn clip(&self, aspect: f32) -> Mat4 {
+        perspective(FIELD, aspect, NEAR, FAR) * look_at_mat4(self.eye(), self.focus, Vec3::Y)
+    }
+
+    /// Turns around the focus, rad.
+    pub fn orbit(&mut self, yaw: f32, pitch: f32) {
+        self.yaw += yaw;
+        self.pitch = (self.pitch + pitch).clamp(PITCH[0], PITCH[1]);
+    }
+
+    pub fn zoom(&mut self, factor: f32) {
+        self.distance = (self.distance * factor).clamp(DISTANCE[0], DISTANCE[1]);
+    }
+
+    /// Goes a share of the way to look at a point on the ground.
+    pub fn follow(&mut self, at: [f32; 2], share: f32) {
+        let there = Vec3::new(at[0], self.focus.y, at[1]);
+        self.focus += share * (there - self.focus);
+    }
+
+    /// The ground point under a place of the picture, from (-1, -1) at the lower left to (1, 1).
+    /// `None` above the horizon.
+    pub fn ground(&self, place: Vec2, aspect: f32) -> Option<[f32; 2]> {
+        let back = self.clip(aspect).inverse();
+        let [near, far] = [0.0, 1.0].map(|depth| back.project_point3(place.extend(depth)));
+        let ray = far - near;
+        (ray.y < 0.0).then(|| {
+            let hit = near - ray * (near.y / ray.y);
+            [hit.x, hit.z]
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ground_under_a_pixel_is_drawn_at_that_pixel() {
+        let mut camera = Camera::default();
+        camera.orbit(1.3, 0.4);
+        camera.follow([3.0, -2.0], 0.5);
+        for place in [
+            Vec2::new(0.0, -0.2),
+            Vec2::new(-0.7, -0.9),
+            Vec2::new(0.4, 0.1),
+        ] {
+            let [x, z] = camera.ground(place, 1.6).expect("below the horizon");
+            let back = camera.clip(1.6).project_point3(Vec3::new(x, 0.0, z));
+            assert!((back.truncate() - place).length() < 1e-3, "{place} {back}");
+        }
+        camera.pitch = 0.0;
+        assert_eq!(camera.ground(Vec2::new(0.0, 0.9), 1.6), None);
+    }
+
+    #[test]
+    fn up_is_up_and_a_camera_in_front_sees_the_left_side_on_its_right() {
+        let camera = Camera {
+            yaw: 0.0,
+            ..Camera::default()
+        };
+        let clip = camera.clip(1.0);
+        let seen = |at: Vec3| clip.project_point3(at);
+        assert!(seen(camera.focus + Vec3::Y).y > 0.1);
+        assert!(seen(camera.focus + Vec3::X).x > 0.1);
+    }
+}

@@ -1,0 +1,101 @@
+//! What is drawn besides the body: target, obstacles, trajectories.
+
+use super::rollout::{Rollout, Stage};
+use super::scene::{Block, Colour, Scene};
+use crate::kernels::layout::end;
+use crate::motion::features::AHEAD;
+use crate::playback::Shown;
+use crate::world::Task;
+use glam::Vec3;
+
+const TARGET: Colour = [0.06, 0.50, 0.22];
+pub const ASKED: Colour = [0.90, 0.36, 0.02];
+pub const MATCHED: Colour = [0.02, 0.34, 0.75];
+const OBSTACLE: Colour = [0.42, 0.34, 0.30];
+const STRUCK: Colour = [0.75, 0.05, 0.03];
+/// Of obstacles, m: low enough to see the character behind them.
+const HEIGHT: f32 = 0.35;
+
+/// Everything of a rollout.
+pub fn scene(rollout: &Rollout, stage: &Stage) -> Scene {
+    let mut scene = Scene::default();
+    stage
+        .body
+        .draw(&mut scene, &stage.database.skeleton, &rollout.pose);
+    let reach = match stage.task {
+        Task::Plane(plane) => plane.reach,
+        Task::Obstacles(obstacles) => obstacles.reach,
+    };
+    target(&mut scene, rollout.target(), reach);
+    obstacles(&mut scene, rollout);
+    if let Some(step) = &rollout.step {
+        let from = step.from;
+        trajectory(&mut scene, from.at, &step.asked, ASKED);
+        let matched = Shown {
+            frame: step.matched,
+            ..from
+        };
+        let matched = AHEAD.map(|ahead| {
+            let then = matched.on(&stage.database, ahead as isize);
+            [then.at[0], then.at[1], then.heading[0], then.heading[1]]
+        });
+        trajectory(&mut scene, from.at, &matched, MATCHED);
+    }
+    scene
+}
+
+fn on_ground(at: [f32; 2], height: f32) -> Vec3 {
+    Vec3::new(at[0], height, at[1])
+}
+
+/// A ring of the radius within which it counts as reached, and a pole in its middle.
+fn target(scene: &mut Scene, at: [f32; 2], reach: f32) {
+    const CORNERS: usize = 40;
+    let ring: Vec<Vec3> = (0..=CORNERS)
+        .map(|corner| {
+            let angle = std::f32::consts::TAU * corner as f32 / CORNERS as f32;
+            on_ground(
+                [at[0] + reach * angle.sin(), at[1] + reach * angle.cos()],
+                0.01,
+            )
+        })
+        .collect();
+    scene.rod(&ring, 0.02, TARGET);
+    scene.rod(&[on_ground(at, 0.0), on_ground(at, 1.6)], 0.02, TARGET);
+    scene.ball(on_ground(at, 1.6), 0.1, TARGET);
+}
+
+fn obstacles(scene: &mut Scene, rollout: &Rollout) {
+    let struck = rollout
+        .step
+        .as_ref()
+        .is_some_and(|step| step.ended == end::COLLIDED);
+    let at = rollout.shown.at;
+    for (slot, [x, z, half_x, half_z]) in rollout.obstacles().into_iter().enumerate() {
+        let hit = struck && (x - at[0]).abs() <= half_x && (z - at[1]).abs() <= half_z;
+        // Obstacles overlap: each has its own height and shade.
+        let own = (slot * 5 % 8) as f32 / 8.0;
+        let height = HEIGHT * (0.8 + 0.4 * own);
+        scene.blocks.push(Block {
+            centre: [x, 0.5 * height, z],
+            half: [half_x, 0.5 * height, half_z],
+            colour: match hit {
+                true => STRUCK,
+                false => OBSTACLE.map(|value| value * (0.75 + 0.5 * own)),
+            },
+        });
+    }
+}
+
+/// A line through the points asked for, with an arrow each for where to face.
+pub fn trajectory(scene: &mut Scene, from: [f32; 2], points: &[[f32; 4]], colour: Colour) {
+    const ABOVE: f32 = 0.025;
+    let places = std::iter::once(from).chain(points.iter().map(|p| [p[0], p[1]]));
+    let line: Vec<Vec3> = places.map(|at| on_ground(at, ABOVE)).collect();
+    scene.rod(&line, 0.015, colour);
+    for &[x, z, hx, hz] in points {
+        let base = on_ground([x, z], ABOVE);
+        scene.ball(base, 0.04, colour);
+        scene.tip(base, 0.04, base + 0.28 * Vec3::new(hx, 0.0, hz), colour);
+    }
+}
