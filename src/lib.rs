@@ -25,6 +25,7 @@
 //! - [`ppo`]: policy, rollout, update;
 //! - [`train`]: configuration, run folder, checkpoints, the loop, evaluation;
 //! - [`view`]: scenes, and the renderer that draws them on the GPU or on lavapipe;
+//! - [`play`]: the window: a controller at work, and why it does what it does;
 //! - [`benchmark`]: what each device makes of each stage;
 //! - [`report`]: pictures, TensorBoard events, tables;
 //! - [`store`] and [`tensors`]: files and tensors as plain arrays.
@@ -33,6 +34,7 @@ pub mod benchmark;
 pub mod gpu;
 pub mod kernels;
 pub mod motion;
+pub mod play;
 pub mod playback;
 pub mod ppo;
 pub mod report;

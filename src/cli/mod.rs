@@ -4,6 +4,7 @@ mod ablate;
 mod bench;
 mod data;
 mod eval;
+mod play;
 mod render;
 mod run;
 mod train;
@@ -31,6 +32,8 @@ enum Command {
     Ablate(ablate::Ablate),
     /// Judge a trained policy on a fixed set of episodes
     Eval(eval::Eval),
+    /// Open a window on a trained policy, or on motion
+    Play(play::Play),
     /// Draw what a trained policy does, to files
     Render(render::Render),
     /// Measure what each device makes of each stage
@@ -50,6 +53,7 @@ pub fn run() -> Result<()> {
         Command::Train(task) => task.run(),
         Command::Ablate(ablate) => ablate.run(),
         Command::Eval(eval) => eval.run(),
+        Command::Play(play) => play.run(),
         Command::Render(render) => render.run(),
         Command::Bench(bench) => bench.run(),
         Command::Data(data) => data.run(),

@@ -179,6 +179,12 @@ impl Database {
         }
     }
 
+    /// The clip that a frame belongs to.
+    pub fn clip(&self, frame: usize) -> &ClipRecord {
+        let after = self.clips.partition_point(|clip| clip.first <= frame);
+        &self.clips[after - 1]
+    }
+
     pub fn frames(&self) -> usize {
         self.features.len()
     }

@@ -2,6 +2,7 @@
 
 use super::pose::Pose;
 use crate::motion::database::Database;
+use crate::motion::features::AHEAD;
 use crate::motion::frame::{to_local, to_world};
 use glam::{Quat, Vec3};
 
@@ -20,9 +21,10 @@ impl Shown {
     /// The same character so many frames later (or earlier), walking on as recorded. The clip's ends
     /// hold it back.
     pub fn on(self, database: &Database, frames: isize) -> Shown {
-        let clip = clip(database, self.frame);
-        let frame = (self.frame as isize + frames).clamp(clip[0] as isize, clip[1] as isize);
-        let frame = frame as usize;
+        let clip = database.clip(self.frame);
+        let last = clip.first + clip.frames - 1;
+        let frame = self.frame.saturating_add_signed(frames);
+        let frame = frame.clamp(clip.first, last);
         let ([x, z, hx, hz], then) = (database.path[self.frame], database.path[frame]);
         let moved = to_local([then[0] - x, then[1] - z], [hx, hz]);
         let moved = to_world(moved, self.heading);
@@ -33,6 +35,14 @@ impl Shown {
             at: [self.at[0] + moved[0], self.at[1] + moved[1]],
             heading: [turned_x / length, turned_z / length],
         }
+    }
+
+    /// Where the trajectory feature looks: x, z (m), heading x, heading z.
+    pub fn path(self, database: &Database) -> [[f32; 4]; AHEAD.len()] {
+        AHEAD.map(|ahead| {
+            let then = self.on(database, ahead as isize);
+            [then.at[0], then.at[1], then.heading[0], then.heading[1]]
+        })
     }
 
     /// The whole body, as recorded.
@@ -53,11 +63,4 @@ impl Shown {
 /// The turn about the vertical that takes +z to `heading`.
 fn yaw(heading: [f32; 2]) -> f32 {
     heading[0].atan2(heading[1])
-}
-
-/// First and last frame of the clip that a frame belongs to.
-fn clip(database: &Database, frame: usize) -> [usize; 2] {
-    let after = database.clips.partition_point(|clip| clip.first <= frame);
-    let clip = &database.clips[after - 1];
-    [clip.first, clip.first + clip.frames - 1]
 }

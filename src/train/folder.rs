@@ -125,6 +125,26 @@ impl Folder {
         self.checkpoint(&format!("steps-{steps:010}"))
     }
 
+    /// All checkpoints, the periodic ones first and in order.
+    ///
+    /// # Errors
+    /// Their folder cannot be read.
+    pub fn checkpoint_files(&self) -> Result<Vec<PathBuf>> {
+        let folder = self.checkpoints();
+        let entries = std::fs::read_dir(&folder);
+        let entries = entries.with_context(|| format!("cannot read {}", folder.display()))?;
+        let mut files: Vec<PathBuf> = entries
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .filter(|path| path.extension().is_some_and(|ending| ending == "ckpt"))
+            .collect();
+        let periodic = |path: &PathBuf| {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            name.starts_with("steps-")
+        };
+        files.sort_by_key(|path| (!periodic(path), path.clone()));
+        Ok(files)
+    }
+
     pub fn write_config(&self, config: &Config) -> Result<()> {
         let text = toml::to_string(config).context("the configuration has no TOML form")?;
         Ok(crate::store::write_whole(

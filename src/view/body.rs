@@ -116,7 +116,7 @@ impl Anatomy<'_> {
                 3 => [0.034, 0.028],
                 _ => [0.014, 0.010],
             },
-            Part::Spine => [0.10, 0.10],
+            Part::Spine => [0.115, 0.125],
             Part::Collar => return None,
             Part::Head(depth) => match depth + tip {
                 0 | 1 => [0.055, 0.050],

@@ -3,7 +3,6 @@
 use super::rollout::{Rollout, Stage};
 use super::scene::{Block, Colour, Scene};
 use crate::kernels::layout::end;
-use crate::motion::features::AHEAD;
 use crate::playback::Shown;
 use crate::world::Task;
 use glam::Vec3;
@@ -18,16 +17,23 @@ const HEIGHT: f32 = 0.35;
 
 /// Everything of a rollout.
 pub fn scene(rollout: &Rollout, stage: &Stage) -> Scene {
-    let mut scene = Scene::default();
-    stage
-        .body
-        .draw(&mut scene, &stage.database.skeleton, &rollout.pose);
+    let mut scene = untargeted(rollout, stage);
     let reach = match stage.task {
         Task::Plane(plane) => plane.reach,
         Task::Obstacles(obstacles) => obstacles.reach,
     };
     target(&mut scene, rollout.target(), reach);
     obstacles(&mut scene, rollout);
+    scene
+}
+
+/// The character and its trajectories alone.
+pub fn untargeted(rollout: &Rollout, stage: &Stage) -> Scene {
+    let mut scene = Scene::default();
+    let database = &stage.database;
+    stage
+        .body
+        .draw(&mut scene, &database.skeleton, &rollout.pose);
     if let Some(step) = &rollout.step {
         let from = step.from;
         trajectory(&mut scene, from.at, &step.asked, ASKED);
@@ -35,11 +41,7 @@ pub fn scene(rollout: &Rollout, stage: &Stage) -> Scene {
             frame: step.matched,
             ..from
         };
-        let matched = AHEAD.map(|ahead| {
-            let then = matched.on(&stage.database, ahead as isize);
-            [then.at[0], then.at[1], then.heading[0], then.heading[1]]
-        });
-        trajectory(&mut scene, from.at, &matched, MATCHED);
+        trajectory(&mut scene, from.at, &matched.path(database), MATCHED);
     }
     scene
 }

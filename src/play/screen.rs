@@ -1,0 +1,113 @@
+//! The part of the window that shows the scene.
+
+use crate::gpu::Gpu;
+use crate::view::{Camera, Canvas, Renderer, Scene};
+use eframe::egui::{self, Sense, TextureId, Ui, Vec2};
+use eframe::egui_wgpu::RenderState;
+use eframe::wgpu::FilterMode;
+
+/// Radians a point of dragging.
+const ORBIT: f32 = 0.007;
+/// Share of the distance a point of scrolling.
+const ZOOM: f32 = 0.002;
+/// Software rasterisers draw fewer pixels: every second one of each row and column.
+const COARSE: f32 = 0.5;
+
+pub struct Screen {
+    renderer: Renderer,
+    canvas: Canvas,
+    window: RenderState,
+    texture: TextureId,
+    /// Pixels drawn a pixel shown, along a side.
+    scale: f32,
+}
+
+/// What the pointer did on the ground, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Touch {
+    Click([f32; 2]),
+    /// Pressed, about to drag.
+    Press([f32; 2]),
+    Drag([f32; 2]),
+    Release,
+}
+
+impl Screen {
+    /// In a window on the device that `gpu` has.
+    pub fn new(gpu: &Gpu, window: &RenderState) -> Screen {
+        let renderer = Renderer::new(gpu);
+        let canvas = Canvas::new(&renderer.device, [16, 16]);
+        let texture = window.renderer.write().register_native_texture(
+            &window.device,
+            &canvas.shown(),
+            FilterMode::Linear,
+        );
+        Screen {
+            renderer,
+            canvas,
+            window: window.clone(),
+            texture,
+            scale: if gpu.software { COARSE } else { 1.0 },
+        }
+    }
+
+    /// Draws the scene over what is left of the window. `grabbed`: dragging is the caller's, not the
+    /// camera's.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        scene: &Scene,
+        camera: &mut Camera,
+        grabbed: bool,
+    ) -> Option<Touch> {
+        let points = ui.available_size().max(Vec2::splat(16.0));
+        let pixels = points * ui.ctx().pixels_per_point() * self.scale;
+        self.fit([pixels.x, pixels.y].map(|side| (side.round() as u32).clamp(16, 8192)));
+        self.renderer.draw(scene, camera, &self.canvas);
+        let image =
+            egui::Image::from_texture((self.texture, points)).sense(Sense::click_and_drag());
+        let response = ui.add(image);
+        if response.hovered() {
+            let scrolled = ui.input(|input| input.smooth_scroll_delta().y);
+            camera.zoom((-ZOOM * scrolled).exp());
+        }
+        let aspect = points.x / points.y;
+        let pointer = response.interact_pointer_pos();
+        let on_ground = |camera: &Camera| {
+            let place = (pointer? - response.rect.center()) / (0.5 * response.rect.size());
+            camera.ground([place.x, -place.y].into(), aspect)
+        };
+        let dragged = response.drag_delta();
+        if response.drag_stopped() {
+            return Some(Touch::Release);
+        }
+        if response.clicked() {
+            return on_ground(camera).map(Touch::Click);
+        }
+        if response.drag_started() && response.dragged_by(egui::PointerButton::Primary) {
+            // Where the button went down, not where the drag was noticed.
+            return on_ground(camera).map(Touch::Press);
+        }
+        if grabbed {
+            return on_ground(camera).map(Touch::Drag);
+        }
+        camera.orbit(-ORBIT * dragged.x, ORBIT * dragged.y);
+        None
+    }
+
+    fn fit(&mut self, size: [u32; 2]) {
+        if size == self.canvas.size {
+            return;
+        }
+        self.canvas = Canvas::new(&self.renderer.device, size);
+        self.window
+            .renderer
+            .write()
+            .update_egui_texture_from_wgpu_texture(
+                &self.window.device,
+                &self.canvas.shown(),
+                FilterMode::Linear,
+                self.texture,
+            );
+    }
+}
