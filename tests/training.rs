@@ -53,6 +53,7 @@ fn run(
         &device,
         from,
         &AtomicBool::new(false),
+        None,
     )
 }
 

@@ -60,7 +60,7 @@ impl Play {
         });
         let title = format!("footwork: {}", folder.path().display());
         let stage = Stage::new(database.clone(), task, Style::BEST);
-        window::open(&Gpu::drawing()?, &title, stage, choices.collect())
+        window::play(&Gpu::drawing()?, &title, stage, choices.collect())
     }
 
     fn motion(&self) -> Result<()> {
@@ -74,6 +74,6 @@ impl Play {
             ..Plane::default()
         });
         let stage = Stage::new(Arc::new(database), task, Style::BEST);
-        window::open(&Gpu::drawing()?, "footwork", stage, Vec::new())
+        window::play(&Gpu::drawing()?, "footwork", stage, Vec::new())
     }
 }

@@ -242,7 +242,7 @@ impl Film {
 
     fn picture(&mut self) -> Result<Vec<u8>> {
         let scene = scene(&self.rollout, &self.stage);
-        self.renderer.draw(&scene, &self.camera, &self.canvas);
+        self.renderer.draw(&scene, None, &self.camera, &self.canvas);
         self.canvas
             .read(&self.renderer.device, &self.renderer.queue)
     }

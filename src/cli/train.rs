@@ -3,13 +3,14 @@
 use super::Usage;
 use anyhow::Result;
 use clap::{Args, Subcommand};
-use footwork::gpu::{Choice, Device};
+use footwork::gpu::{Choice, Device, Gpu};
 use footwork::motion::database::Database;
+use footwork::play::window;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Kind, Preset};
 use footwork::train::data;
-use footwork::train::folder::Folder;
-use footwork::train::trainer::train;
+use footwork::train::folder::{Folder, Summary};
+use footwork::train::trainer::{Watch, train};
 use footwork::world::Task;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -56,6 +57,9 @@ pub struct Options {
     /// The same seed on the same device gives the same result, bit for bit [default: 1]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seed: Option<u32>,
+    /// Open a window on all environments; closing it does not stop the training
+    #[arg(long)]
+    watch: bool,
     /// The run's folder [default: runs/TASK-N]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -144,14 +148,24 @@ impl Options {
         let written = folder.write_config(&config);
         written.inspect_err(|_| folder.remove_empty())?;
         introduce(&config, &folder, &database, &device);
-        let summary = train(
-            &config,
-            &folder,
-            &database,
-            &device,
-            checkpoint,
-            interrupted,
-        )?;
+        let run = |watch: Option<&Watch>| {
+            let folder = &folder;
+            train(
+                &config,
+                folder,
+                &database,
+                &device,
+                checkpoint,
+                interrupted,
+                watch,
+            )
+        };
+        let summary = match self.watch {
+            false => run(None)?,
+            true => watched(&device, &database, config.ppo.envs, |watch| {
+                run(Some(watch))
+            })?,
+        };
         println!(
             "{} steps in {:.1} s ({:.0} steps/s), stopped by {}: {:.1} % of 1000 episodes{} reach the target, in {:.2} s on average",
             summary.steps,
@@ -267,6 +281,35 @@ fn introduce(config: &Config, folder: &Folder, database: &Database, device: &Dev
         database.candidates.len(),
         folder.path().display(),
     );
+}
+
+/// Trains on a thread of its own while this one, as windows want it, shows the worlds.
+fn watched(
+    device: &Device,
+    database: &Arc<Database>,
+    envs: usize,
+    train: impl FnOnce(&Watch) -> Result<Summary> + Send,
+) -> Result<Summary> {
+    // Training on the CPU is drawn on what there is to draw on.
+    let gpu = match device {
+        Device::Gpu(gpu) => (**gpu).clone(),
+        Device::Cpu => Gpu::drawing()?,
+    };
+    let (watch, over) = (Arc::new(Watch::default()), Arc::new(AtomicBool::new(false)));
+    std::thread::scope(|scope| {
+        let training = scope.spawn(|| {
+            let summary = train(&watch);
+            over.store(true, Ordering::Relaxed);
+            summary
+        });
+        let shown = window::watch(&gpu, database.clone(), envs, watch.clone(), over.clone());
+        if let Err(error) = shown {
+            eprintln!("note: the training goes on unwatched: {error:#}");
+        }
+        training
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
 }
 
 /// The first Ctrl-C asks the run to save and stop, the second ends the program.

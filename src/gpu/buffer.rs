@@ -3,7 +3,9 @@
 use super::device::Gpu;
 use bytemuck::Pod;
 use cubecl::server::Handle;
+use cubecl::wgpu::{AutoCompiler, WgpuServer};
 use std::marker::PhantomData;
+use std::num::NonZeroU64;
 
 /// An array of `len` values of four bytes each on the device. Cloning shares the memory.
 #[derive(Clone)]
@@ -11,6 +13,26 @@ pub struct Buffer<T> {
     pub(super) handle: Handle,
     len: usize,
     kind: PhantomData<T>,
+}
+
+type Server = WgpuServer<AutoCompiler>;
+
+/// An array on the device outside of burn's runtime, whose memory stays where it is while this lives.
+pub struct Shared {
+    buffer: wgpu::Buffer,
+    offset: u64,
+    size: u64,
+    _memory: Handle,
+}
+
+impl Shared {
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &self.buffer,
+            offset: self.offset,
+            size: NonZeroU64::new(self.size),
+        })
+    }
 }
 
 /// Any buffer, as a kernel's argument.
@@ -47,6 +69,22 @@ impl<T: Pod> Buffer<T> {
             len,
             kind: PhantomData,
         }
+    }
+
+    /// The buffer itself, for whoever draws on the same device.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn share(&self, gpu: &Gpu) -> anyhow::Result<Shared> {
+        let resource = gpu.client.get_resource::<Server>(self.handle.clone());
+        let resource = resource.map_err(|error| anyhow::anyhow!("the GPU stopped: {error:?}"))?;
+        let resource = resource.resource();
+        Ok(Shared {
+            buffer: resource.buffer.clone(),
+            offset: resource.offset,
+            size: resource.size,
+            _memory: self.handle.clone(),
+        })
     }
 
     pub fn len(&self) -> usize {

@@ -12,5 +12,5 @@ pub mod kernel;
 pub mod shader;
 pub mod tensor;
 
-pub use buffer::Buffer;
+pub use buffer::{Buffer, Shared};
 pub use device::{Choice, Device, Gpu};

@@ -1,7 +1,7 @@
 //! The part of the window that shows the scene.
 
 use crate::gpu::Gpu;
-use crate::view::{Camera, Canvas, Renderer, Scene};
+use crate::view::{Camera, Canvas, Crowd, Renderer, Scene};
 use eframe::egui::{self, Sense, TextureId, Ui, Vec2};
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu::FilterMode;
@@ -14,7 +14,7 @@ const ZOOM: f32 = 0.002;
 const COARSE: f32 = 0.5;
 
 pub struct Screen {
-    renderer: Renderer,
+    pub renderer: Renderer,
     canvas: Canvas,
     window: RenderState,
     texture: TextureId,
@@ -57,13 +57,14 @@ impl Screen {
         &mut self,
         ui: &mut Ui,
         scene: &Scene,
+        crowd: Option<&Crowd>,
         camera: &mut Camera,
         grabbed: bool,
     ) -> Option<Touch> {
         let points = ui.available_size().max(Vec2::splat(16.0));
         let pixels = points * ui.ctx().pixels_per_point() * self.scale;
         self.fit([pixels.x, pixels.y].map(|side| (side.round() as u32).clamp(16, 8192)));
-        self.renderer.draw(scene, camera, &self.canvas);
+        self.renderer.draw(scene, crowd, camera, &self.canvas);
         let image =
             egui::Image::from_texture((self.texture, points)).sense(Sense::click_and_drag());
         let response = ui.add(image);

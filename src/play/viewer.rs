@@ -347,19 +347,27 @@ impl Viewer {
             Source::Clip(clip) => Some(clip),
             _ => None,
         };
-        for (index, clip) in self.stage.database.clips.iter().enumerate() {
-            let seconds = clip.frames as f32 / RATE;
-            let label = format!("{} ({seconds:.0} s)", clip.name);
-            let response = ui.selectable_label(chosen == Some(index), label);
-            if response
-                .on_hover_text(format!("{}\n{}", clip.source, clip.licence))
-                .clicked()
-            {
-                self.source = Source::Clip(index);
-                self.clip_frame = 0;
-                self.playing = true;
-                self.camera.follow(self.clip_shown(index).at, 1.0);
+        let list = egui::ScrollArea::vertical()
+            .id_salt("clips")
+            .max_height(260.0);
+        list.show(ui, |ui| {
+            for index in 0..self.stage.database.clips.len() {
+                self.clip_entry(ui, index, chosen == Some(index));
             }
+        });
+    }
+
+    fn clip_entry(&mut self, ui: &mut Ui, index: usize, chosen: bool) {
+        let clip = &self.stage.database.clips[index];
+        let seconds = clip.frames as f32 / RATE;
+        let label = format!("{} ({seconds:.0} s)", clip.name);
+        let response = ui.selectable_label(chosen, label);
+        let response = response.on_hover_text(format!("{}\n{}", clip.source, clip.licence));
+        if response.clicked() {
+            self.source = Source::Clip(index);
+            self.clip_frame = 0;
+            self.playing = true;
+            self.camera.follow(self.clip_shown(index).at, 1.0);
         }
     }
 
@@ -443,7 +451,9 @@ impl Viewer {
     fn world(&mut self, ui: &mut Ui) {
         let scene = self.scene();
         let grabbed = self.grabbed.is_some();
-        let touch = self.screen.show(ui, &scene, &mut self.camera, grabbed);
+        let touch = self
+            .screen
+            .show(ui, &scene, None, &mut self.camera, grabbed);
         let Source::Policy(_) = self.source else {
             return;
         };

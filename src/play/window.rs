@@ -1,26 +1,50 @@
-//! Opens the window, on the device that everything else uses.
+//! Opens windows, on the device that everything else uses.
 
 use super::viewer::{Choice, Viewer};
+use super::watch::Crowded;
 use crate::gpu::Gpu;
+use crate::motion::database::Database;
+use crate::train::trainer::Watch;
 use crate::view::rollout::Stage;
 use anyhow::{Context, Result, anyhow};
-use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
+use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use eframe::{NativeOptions, egui};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
+
+/// What a window shows.
+pub trait Contents {
+    fn show(&mut self, ui: &mut egui::Ui);
+}
+
+impl Contents for Viewer {
+    fn show(&mut self, ui: &mut egui::Ui) {
+        Viewer::show(self, ui);
+    }
+}
+
+impl Contents for Crowded {
+    fn show(&mut self, ui: &mut egui::Ui) {
+        Crowded::show(self, ui);
+    }
+}
 
 /// Why the device was lost, once it is.
 type Lost = Arc<OnceLock<String>>;
 
 struct Window {
-    viewer: Viewer,
+    contents: Box<dyn Contents>,
     lost: Lost,
+    /// Whether there is nothing more to show.
+    over: Arc<AtomicBool>,
 }
 
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
-        match self.lost.get() {
-            Some(_) => ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close),
-            None => self.viewer.show(ui),
+        let over = self.over.load(Ordering::Relaxed);
+        match over || self.lost.get().is_some() {
+            true => ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close),
+            false => self.contents.show(ui),
         }
     }
 }
@@ -35,11 +59,38 @@ pub fn shared(gpu: &Gpu) -> WgpuSetup {
     })
 }
 
-/// Shows a window until it is closed.
+/// Shows a controller until its window is closed.
 ///
 /// # Errors
 /// There is no display, a policy cannot be loaded, or the GPU was lost.
-pub fn open(gpu: &Gpu, title: &str, stage: Stage, choices: Vec<Choice>) -> Result<()> {
+pub fn play(gpu: &Gpu, title: &str, stage: Stage, choices: Vec<Choice>) -> Result<()> {
+    let viewer = |window: &RenderState| Viewer::new(gpu, window, stage, choices);
+    let over = Arc::new(AtomicBool::new(false));
+    open(gpu, title, over, |window| Ok(Box::new(viewer(window)?)))
+}
+
+/// Shows a training of `envs` environments until it is `over` or its window is closed.
+///
+/// # Errors
+/// There is no display, or the GPU was lost.
+pub fn watch(
+    gpu: &Gpu,
+    database: Arc<Database>,
+    envs: usize,
+    watch: Arc<Watch>,
+    over: Arc<AtomicBool>,
+) -> Result<()> {
+    open(gpu, "footwork: training", over, |window| {
+        Ok(Box::new(Crowded::new(gpu, window, database, envs, watch)))
+    })
+}
+
+fn open(
+    gpu: &Gpu,
+    title: &str,
+    over: Arc<AtomicBool>,
+    contents: impl FnOnce(&RenderState) -> Result<Box<dyn Contents>>,
+) -> Result<()> {
     let lost = Lost::default();
     let told = lost.clone();
     gpu.setup
@@ -56,12 +107,16 @@ pub fn open(gpu: &Gpu, title: &str, stage: Stage, choices: Vec<Choice>) -> Resul
         },
         ..Default::default()
     };
-    let (gpu, kept) = (gpu.clone(), lost.clone());
+    let kept = lost.clone();
     let create = move |context: &eframe::CreationContext| {
         let window = context.wgpu_render_state.as_ref();
         let window = window.context("the window does not draw with wgpu")?;
-        let viewer = Viewer::new(&gpu, window, stage, choices)?;
-        Ok(Box::new(Window { viewer, lost }) as Box<dyn eframe::App>)
+        let contents = contents(window)?;
+        Ok(Box::new(Window {
+            contents,
+            lost,
+            over,
+        }) as Box<dyn eframe::App>)
     };
     let closed = eframe::run_native(title, options, Box::new(create));
     if let Some(why) = kept.get() {
@@ -72,7 +127,7 @@ pub fn open(gpu: &Gpu, title: &str, stage: Stage, choices: Vec<Choice>) -> Resul
     closed.map_err(|error| match error {
         eframe::Error::AppCreation(error) => anyhow!("{error}"),
         eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => anyhow!(
-            "no window can be opened ({error}): is there a display? `footwork render` draws to files without one"
+            "no window can be opened: there is no display. `footwork render` draws to files without one ({error})"
         ),
         error => anyhow!("the window cannot be drawn: {error}"),
     })

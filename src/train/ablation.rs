@@ -159,7 +159,7 @@ fn finish(
     if !path.join("config.toml").exists() {
         let folder = Folder::create(Some(path), config.task.name())?;
         folder.write_config(config)?;
-        train(config, &folder, database, device, None, interrupted)?;
+        train(config, &folder, database, device, None, interrupted, None)?;
         return Ok(folder);
     }
     let folder = Folder::open(path)?;
@@ -190,7 +190,15 @@ fn finish(
     }
     if done < config.steps {
         folder.write_config(config)?;
-        train(config, &folder, database, device, checkpoint, interrupted)?;
+        train(
+            config,
+            &folder,
+            database,
+            device,
+            checkpoint,
+            interrupted,
+            None,
+        )?;
     }
     Ok(folder)
 }

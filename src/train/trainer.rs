@@ -16,12 +16,13 @@ use crate::ppo::rollout::{self, Rollout};
 use crate::ppo::update::{Learner, Losses};
 use crate::tensors;
 use crate::world::curriculum::Curriculum;
+use crate::world::watched::Watched;
 use crate::world::{self, Setup, Tally, Task, World};
 use anyhow::{Context, Result, bail};
 use burn::tensor::Tensor;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 /// Episodes of an evaluation.
@@ -102,6 +103,21 @@ impl Memory {
     }
 }
 
+/// For somebody who watches a training from another thread.
+#[derive(Default)]
+pub struct Watch {
+    /// Once the worlds are open; taken by who draws them.
+    pub worlds: Mutex<Option<Watched>>,
+    /// The latest update.
+    pub row: Mutex<Option<Row>>,
+}
+
+impl Watch {
+    fn leave<T>(place: &Mutex<Option<T>>, value: T) {
+        *place.lock().unwrap_or_else(PoisonError::into_inner) = Some(value);
+    }
+}
+
 /// A run under way.
 struct Run<'a> {
     config: &'a Config,
@@ -121,7 +137,7 @@ struct Run<'a> {
 }
 
 /// Trains until a limit, the wished-for success or `interrupted`; with `from`, goes on where that
-/// checkpoint was taken. Ends by writing checkpoint, pictures and `summary.json`.
+/// checkpoint was taken; `watch` is kept up to date for who watches. Ends by writing checkpoint, pictures and `summary.json`.
 ///
 /// # Errors
 /// A file cannot be written, the device is lost, or the losses are no longer finite. The last
@@ -133,9 +149,13 @@ pub fn train(
     device: &Device,
     from: Option<Checkpoint>,
     interrupted: &AtomicBool,
+    watch: Option<&Watch>,
 ) -> Result<Summary> {
     let mut run = Run::open(config, folder, database, device, from)?;
-    let stopped_by = run.advance(interrupted);
+    if let Some(watch) = watch {
+        Watch::leave(&watch.worlds, run.world.watch()?);
+    }
+    let stopped_by = run.advance(interrupted, watch);
     let outcome = stopped_by.and_then(|by| {
         run.save(&folder.checkpoint("last"))?;
         Ok(by)
@@ -207,7 +227,7 @@ impl<'a> Run<'a> {
     }
 
     /// Updates until there is a reason to stop.
-    fn advance(&mut self, interrupted: &AtomicBool) -> Result<&'static str> {
+    fn advance(&mut self, interrupted: &AtomicBool, watch: Option<&Watch>) -> Result<&'static str> {
         loop {
             if self.steps >= self.config.steps {
                 return Ok("steps");
@@ -224,6 +244,9 @@ impl<'a> Run<'a> {
             }
             let before = self.steps;
             let mut row = self.update()?;
+            if let Some(watch) = watch {
+                Watch::leave(&watch.row, row.clone());
+            }
             let reached =
                 self.crossed(self.config.evaluate_every, before) && self.arrived(&mut row)?;
             self.write_down(row)?;

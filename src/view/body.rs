@@ -4,6 +4,7 @@ use super::scene::{Colour, Scene};
 use crate::motion::roles::Roles;
 use crate::motion::skeleton::Skeleton;
 use crate::playback::Pose;
+use bytemuck::{Pod, Zeroable};
 use glam::{Quat, Vec3};
 
 /// Left limbs are blue and right ones orange: a mirrored or crossed leg shows at once.
@@ -28,6 +29,16 @@ struct Spot {
 pub struct Bone {
     ends: [Spot; 2],
     colour: Colour,
+}
+
+/// A bone in a shader's table.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Row {
+    ends: [u32; 2],
+    /// m
+    radii: [f32; 2],
+    colour: [f32; 4],
 }
 
 /// All capsules of a body.
@@ -60,6 +71,38 @@ impl Body {
         Body {
             bones: anatomy.bones(),
         }
+    }
+
+    /// The different points that bones end in: joint and offset in its frame, m.
+    pub fn points(&self) -> Vec<(usize, Vec3)> {
+        let mut points = Vec::new();
+        for spot in self.bones.iter().flat_map(|bone| bone.ends) {
+            let point = (spot.joint, spot.offset);
+            if !points.contains(&point) {
+                points.push(point);
+            }
+        }
+        points
+    }
+
+    /// The bones as a shader reads them: ends by their place in [`Body::points`].
+    pub fn table(&self) -> Vec<Row> {
+        let points = self.points();
+        let place = |spot: Spot| {
+            let place = points
+                .iter()
+                .position(|&point| point == (spot.joint, spot.offset));
+            place.unwrap_or_default() as u32
+        };
+        let row = |bone: &Bone| {
+            let ([a, b], [r, g, bl]) = (bone.ends, bone.colour);
+            Row {
+                ends: [place(a), place(b)],
+                radii: [a.radius, b.radius],
+                colour: [r, g, bl, 1.0],
+            }
+        };
+        self.bones.iter().map(row).collect()
     }
 
     /// Adds a body to a scene.

@@ -4,6 +4,7 @@
 pub mod body;
 pub mod camera;
 pub mod canvas;
+pub mod crowd;
 pub mod film;
 pub mod marks;
 pub mod painter;
@@ -13,5 +14,6 @@ pub mod scene;
 
 pub use camera::Camera;
 pub use canvas::Canvas;
+pub use crowd::Crowd;
 pub use renderer::Renderer;
 pub use scene::Scene;

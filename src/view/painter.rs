@@ -22,6 +22,11 @@ impl Mesh {
             count: corners.len() as u32,
         }
     }
+
+    pub fn draw(&self, pass: &mut wgpu::RenderPass, instances: u32) {
+        pass.set_vertex_buffer(0, self.corners.slice(..));
+        pass.draw(0..self.count, 0..instances);
+    }
 }
 
 /// What the two passes draw a shape with.
@@ -165,9 +170,8 @@ impl Painter {
             return;
         }
         pass.set_pipeline(self.pipelines.of(which));
-        pass.set_vertex_buffer(0, self.mesh.corners.slice(..));
         pass.set_vertex_buffer(1, self.instances.slice(..));
-        pass.draw(0..self.mesh.count, 0..self.count);
+        self.mesh.draw(pass, self.count);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::camera::Camera;
 use super::canvas::{Canvas, DEPTH};
+use super::crowd::Crowd;
 use super::painter::{Layouts, Mesh, Painter, Pass, Pipelines};
 use super::scene::{Block, Capsule, Scene};
 use crate::gpu::Gpu;
@@ -40,6 +41,8 @@ struct Bound {
 pub struct Renderer {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
+    view_layout: wgpu::BindGroupLayout,
+    shadows_layout: wgpu::BindGroupLayout,
     ground: Pipelines,
     capsules: Painter,
     blocks: Painter,
@@ -69,12 +72,33 @@ impl Renderer {
             sun: bound(&device, &view),
             shadows: shadows(&device, &shadows_layout, &depths),
             depths,
+            view_layout: view,
+            shadows_layout,
             device,
             queue,
         }
     }
 
-    pub fn draw(&mut self, scene: &Scene, camera: &Camera, canvas: &Canvas) {
+    /// For a shape of its own: from a shader under `shaders/view`, with what it binds as group 2.
+    pub fn pipelines(
+        &self,
+        text: &str,
+        buffers: &[Option<wgpu::VertexBufferLayout>],
+        own: Option<&wgpu::BindGroupLayout>,
+    ) -> Pipelines {
+        let layouts = Layouts {
+            view: &self.view_layout,
+            shadows: &self.shadows_layout,
+            own,
+        };
+        Pipelines::new(&self.device, text, buffers, &layouts)
+    }
+
+    /// Draws a scene, and a crowd if there is one.
+    pub fn draw(&mut self, scene: &Scene, crowd: Option<&Crowd>, camera: &Camera, canvas: &Canvas) {
+        if let Some(crowd) = crowd {
+            crowd.refresh(&self.queue);
+        }
         let (device, queue) = (&self.device, &self.queue);
         self.capsules.set(device, queue, &scene.capsules);
         self.blocks.set(device, queue, &scene.blocks);
@@ -93,12 +117,12 @@ impl Renderer {
         view.clip = camera.clip(canvas.aspect()).to_cols_array_2d();
         queue.write_buffer(&self.camera.buffer, 0, bytemuck::bytes_of(&view));
         let mut encoder = device.create_command_encoder(&Default::default());
-        self.cast(&mut encoder);
-        self.paint(&mut encoder, canvas);
+        self.cast(&mut encoder, crowd);
+        self.paint(&mut encoder, crowd, canvas);
         queue.submit([encoder.finish()]);
     }
 
-    fn cast(&self, encoder: &mut wgpu::CommandEncoder) {
+    fn cast(&self, encoder: &mut wgpu::CommandEncoder, crowd: Option<&Crowd>) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadows"),
             depth_stencil_attachment: Some(cleared(&self.depths, wgpu::StoreOp::Store)),
@@ -107,9 +131,12 @@ impl Renderer {
         pass.set_bind_group(0, &self.sun.group, &[]);
         self.capsules.draw(&mut pass, Pass::Cast);
         self.blocks.draw(&mut pass, Pass::Cast);
+        if let Some(crowd) = crowd {
+            crowd.draw(&mut pass, Pass::Cast);
+        }
     }
 
-    fn paint(&self, encoder: &mut wgpu::CommandEncoder, canvas: &Canvas) {
+    fn paint(&self, encoder: &mut wgpu::CommandEncoder, crowd: Option<&Crowd>, canvas: &Canvas) {
         let sky = wgpu::Color {
             r: 0.70,
             g: 0.77,
@@ -134,6 +161,9 @@ impl Renderer {
         pass.set_bind_group(1, &self.shadows, &[]);
         self.capsules.draw(&mut pass, Pass::Paint);
         self.blocks.draw(&mut pass, Pass::Paint);
+        if let Some(crowd) = crowd {
+            crowd.draw(&mut pass, Pass::Paint);
+        }
         pass.set_pipeline(self.ground.of(Pass::Paint));
         pass.draw(0..4, 0..1);
     }
@@ -164,8 +194,8 @@ fn capsules(device: &wgpu::Device, layouts: &Layouts) -> Painter {
     let corner = attributes![0 => Float32x4];
     let ends = attributes![1 => Float32x4, 2 => Float32x4, 3 => Float32x3];
     let buffers = [
-        buffer::<[f32; 4]>(wgpu::VertexStepMode::Vertex, &corner),
-        buffer::<Capsule>(wgpu::VertexStepMode::Instance, &ends),
+        vertex_buffer::<[f32; 4]>(wgpu::VertexStepMode::Vertex, &corner),
+        vertex_buffer::<Capsule>(wgpu::VertexStepMode::Instance, &ends),
     ];
     let pipelines = Pipelines::new(device, DRAW_CAPSULE, &buffers, layouts);
     Painter::new(device, pipelines, Mesh::new(device, &sphere(18, 5)))
@@ -175,14 +205,14 @@ fn blocks(device: &wgpu::Device, layouts: &Layouts) -> Painter {
     let corner = attributes![0 => Float32x3, 1 => Float32x3];
     let whole = attributes![2 => Float32x3, 3 => Float32x3, 4 => Float32x3];
     let buffers = [
-        buffer::<[[f32; 3]; 2]>(wgpu::VertexStepMode::Vertex, &corner),
-        buffer::<Block>(wgpu::VertexStepMode::Instance, &whole),
+        vertex_buffer::<[[f32; 3]; 2]>(wgpu::VertexStepMode::Vertex, &corner),
+        vertex_buffer::<Block>(wgpu::VertexStepMode::Instance, &whole),
     ];
     let pipelines = Pipelines::new(device, DRAW_BLOCK, &buffers, layouts);
     Painter::new(device, pipelines, Mesh::new(device, &cube()))
 }
 
-fn buffer<T>(
+pub fn vertex_buffer<T>(
     step_mode: wgpu::VertexStepMode,
     attributes: &[wgpu::VertexAttribute],
 ) -> Option<wgpu::VertexBufferLayout<'_>> {

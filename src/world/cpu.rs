@@ -1,6 +1,7 @@
 //! A batch of worlds on the CPU: the twins, with the pruned search in place of the plain one.
 
 use super::rules::Rules;
+use super::watched::{State, Watched};
 use super::{Setup, Snapshot, Values, World};
 use crate::kernels::layout::{AXES, CELLS, MAPS, boxes, real, whole};
 use crate::kernels::obstacles::inside;
@@ -12,7 +13,7 @@ use crate::motion::features::TRAJECTORY;
 use crate::search::Index;
 use crate::tensors::{upload, values};
 use burn::tensor::{Device, Tensor};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 #[derive(Clone)]
 pub struct CpuWorld {
@@ -42,6 +43,8 @@ pub struct CpuWorld {
     /// `[final_steps][envs][width]`
     last: Vec<f32>,
     device: Device,
+    /// Where to leave every step's state, if somebody watches.
+    watched: Option<Arc<Mutex<State>>>,
 }
 
 impl CpuWorld {
@@ -64,6 +67,7 @@ impl CpuWorld {
             ended: vec![0; setup.horizon * envs],
             last: vec![0.0; rules.final_steps() * envs * setup.task.width()],
             device: Device::flex(),
+            watched: None,
             rules,
             database,
         };
@@ -251,6 +255,10 @@ impl World for CpuWorld {
         self.last = last;
         self.begin(false, 0);
         self.rules.clock += 1;
+        if let Some(watched) = &self.watched {
+            let mut state = watched.lock().unwrap_or_else(PoisonError::into_inner);
+            state.set(&self.real, &self.whole);
+        }
     }
 
     fn last(&mut self) -> Tensor<2> {
@@ -299,6 +307,14 @@ impl World for CpuWorld {
             drift: self.drift.clone(),
             maps: self.maps.clone(),
         })
+    }
+
+    fn watch(&mut self) -> anyhow::Result<Watched> {
+        let mut state = State::default();
+        state.set(&self.real, &self.whole);
+        let state = Arc::new(Mutex::new(state));
+        self.watched = Some(state.clone());
+        Ok(Watched::Cpu(state))
     }
 
     fn restore(&mut self, snapshot: &Snapshot) {

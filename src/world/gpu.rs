@@ -3,6 +3,7 @@
 
 use super::rules::Rules;
 use super::search::Search;
+use super::watched::{Buffers, Watched};
 use super::{Setup, Snapshot, Values, World};
 use crate::gpu::tensor::{from_buffer, to_buffer};
 use crate::gpu::{Buffer, Gpu};
@@ -254,6 +255,13 @@ impl World for GpuWorld {
             drift,
             maps: self.maps.read(&self.gpu)?,
         })
+    }
+
+    fn watch(&mut self) -> anyhow::Result<Watched> {
+        Ok(Watched::Gpu(Buffers {
+            real: self.real.share(&self.gpu)?,
+            whole: self.whole.share(&self.gpu)?,
+        }))
     }
 
     fn restore(&mut self, snapshot: &Snapshot) {

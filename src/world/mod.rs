@@ -13,6 +13,7 @@ pub mod indexed;
 pub mod rules;
 pub mod search;
 pub mod task;
+pub mod watched;
 
 use crate::gpu::Device;
 use crate::kernels::tally;
@@ -22,6 +23,7 @@ use rules::Rules;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 pub use task::{LEVELS, Obstacles, Plane, Task};
+use watched::Watched;
 
 /// What ended since the last tally.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -138,6 +140,12 @@ pub trait World {
 
     /// Copies the state to the host. Only between rollouts.
     fn snapshot(&self) -> anyhow::Result<Snapshot>;
+
+    /// What there is to see, while the batch goes on.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn watch(&mut self) -> anyhow::Result<Watched>;
 
     /// Puts a state back.
     fn restore(&mut self, snapshot: &Snapshot);
