@@ -54,7 +54,7 @@ impl Play {
                     .into(),
                 load: Box::new(move || {
                     let checkpoint = Checkpoint::load_for(&path, &task, database)?;
-                    Ok(Trained::from(&checkpoint))
+                    Ok(Box::new(Trained::from(&checkpoint)))
                 }),
             }
         });

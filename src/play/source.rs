@@ -1,13 +1,13 @@
 //! What moves the character.
 
 use crate::motion::database::Database;
-use crate::train::controller::{Controller, Scripted, Trained};
+use crate::train::controller::{Controller, Scripted};
 use anyhow::Result;
 use std::sync::Arc;
 
 pub enum Source {
     /// A trained policy, on its way to targets.
-    Policy(Trained),
+    Policy(Box<dyn Controller>),
     /// Motion matching, steered by hand.
     Steered(Steered),
     /// A clip of the database as recorded, by its number.
@@ -57,7 +57,7 @@ impl Source {
     /// Who decides the next step; nobody does in a clip.
     pub fn controller(&self) -> Option<&dyn Controller> {
         match self {
-            Source::Policy(policy) => Some(policy),
+            Source::Policy(policy) => Some(&**policy),
             Source::Steered(steered) => Some(steered),
             Source::Clip(_) => None,
         }

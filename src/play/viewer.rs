@@ -9,7 +9,7 @@ use crate::gpu::Gpu;
 use crate::kernels::layout::CELL;
 use crate::motion::features::PLAYED;
 use crate::playback::Shown;
-use crate::train::controller::Trained;
+use crate::train::controller::Controller;
 use crate::view::marks::{self, MATCHED, trajectory};
 use crate::view::rollout::{Rollout, Stage};
 use crate::view::{Camera, Scene};
@@ -30,7 +30,7 @@ const LISTED: usize = 8;
 pub struct Choice {
     pub name: String,
     /// Loads it.
-    pub load: Box<dyn Fn() -> Result<Trained>>,
+    pub load: Box<dyn Fn() -> Result<Box<dyn Controller>>>,
 }
 
 pub struct Viewer {

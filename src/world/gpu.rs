@@ -258,10 +258,10 @@ impl World for GpuWorld {
     }
 
     fn watch(&mut self) -> anyhow::Result<Watched> {
-        Ok(Watched::Gpu(Buffers {
+        Ok(Watched::Gpu(Box::new(Buffers {
             real: self.real.share(&self.gpu)?,
             whole: self.whole.share(&self.gpu)?,
-        }))
+        })))
     }
 
     fn restore(&mut self, snapshot: &Snapshot) {

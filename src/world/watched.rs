@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 /// Where a batch keeps what there is to see.
 pub enum Watched {
     /// The GPU's own buffers: whoever draws on that device reads them in place.
-    Gpu(Buffers),
+    Gpu(Box<Buffers>),
     /// The latest step's state of a batch on the CPU.
     Cpu(Arc<Mutex<State>>),
 }
