@@ -36,6 +36,14 @@ pub enum StoreError {
         found: u32,
         known: u32,
     },
+    #[error(
+        "{path} has format version {found}, which this program no longer reads ({known} is its own): make it again, or use the footwork that wrote it"
+    )]
+    Older {
+        path: PathBuf,
+        found: u32,
+        known: u32,
+    },
     #[error("{path} is damaged ({why}): make it again or take another copy")]
     Damaged { path: PathBuf, why: String },
 }
@@ -189,6 +197,13 @@ pub fn load<H: DeserializeOwned>(path: &Path, format: Format) -> Result<(H, Arra
     }
     let word =
         |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+    if word(16) < format.version {
+        return Err(StoreError::Older {
+            path: path.to_path_buf(),
+            found: word(16),
+            known: format.version,
+        });
+    }
     if word(16) > format.version {
         return Err(StoreError::Newer {
             path: path.to_path_buf(),

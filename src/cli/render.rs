@@ -188,7 +188,7 @@ impl Render {
         if !(self.seconds > 0.0 && self.seconds <= 600.0) {
             return usage("--seconds must be over 0 and at most 600");
         }
-        if self.rate == 0 || RATE % self.rate != 0 {
+        if self.rate == 0 || !RATE.is_multiple_of(self.rate) {
             return usage("--rate must be 30 or divide it: 15, 10, 6, 5, 3, 2 or 1");
         }
         if !(-360.0..=360.0).contains(&self.yaw) {

@@ -8,9 +8,12 @@ mod obstacles;
 #[cfg(unix)]
 mod places;
 mod refused;
+mod render;
 #[cfg(unix)]
 mod stopped;
 mod train;
+#[cfg(target_os = "linux")]
+mod window;
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -1,0 +1,129 @@
+//! `footwork render`.
+
+use super::Place;
+
+/// Width, height and RGB of a PNG file.
+fn png(place: &Place, name: &str) -> (u32, u32, Vec<u8>) {
+    let file = std::fs::File::open(place.path(name)).unwrap();
+    let decoder = png::Decoder::new(std::io::BufReader::new(file));
+    let mut reader = decoder.read_info().unwrap();
+    let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut rgb).unwrap();
+    (info.width, info.height, rgb)
+}
+
+#[test]
+fn draws_pictures_animations_and_frames() {
+    let place = Place::with_run();
+    place.done("render run -o one.png --size 96x64");
+    let (width, height, first) = png(&place, "one.png");
+    assert_eq!((width, height), (96, 64));
+    // The same episode at the same moment is the same picture; at another it is not.
+    place.done("render run -o again.png --size 96x64");
+    assert!(png(&place, "again.png").2 == first);
+    place.done("render run/checkpoints/last.ckpt -o later.png --at 3 --size 96x64");
+    assert!(png(&place, "later.png").2 != first);
+
+    place.done("render run -o frames --seconds 0.5 --rate 10 --size 96x64");
+    let frames = place
+        .list()
+        .into_iter()
+        .filter(|path| path.parent() == Some(&place.path("frames")));
+    assert_eq!(frames.count(), 5);
+    assert!(png(&place, "frames/frame-00000.png").2 == first);
+
+    place.done("render run -o walk.gif --seconds 1 --rate 15 --size 96x64 --joined simple");
+    let file = std::fs::File::open(place.path("walk.gif")).unwrap();
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::Indexed);
+    let mut decoder = options.read_info(file).unwrap();
+    let mut delays = 0;
+    let mut count = 0;
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        assert_eq!((frame.width, frame.height), (96, 64));
+        delays += u32::from(frame.delay);
+        count += 1;
+    }
+    assert_eq!((count, delays), (15, 100));
+}
+
+#[test]
+fn what_is_there_stays_unless_forced() {
+    let place = Place::with_run();
+    place.write("one.png", "mine");
+    place.refused("render run -o one.png", 1, &["one.png", "--force"]);
+    assert_eq!(place.read("one.png"), "mine");
+    place.done("render run -o one.png --force --size 64x48");
+    assert_eq!(png(&place, "one.png").0, 64);
+    place.refused(
+        "render run -o run/checkpoints --seconds 1",
+        1,
+        &["run/checkpoints", "--force"],
+    );
+    place.refused("render run -o small.footwork --force", 2, &[".png"]);
+    place.refused("render run -o none/one.png", 1, &["none"]);
+    place.write("plain", "mine");
+    place.refused("render run -o plain --force", 1, &["plain"]);
+}
+
+#[test]
+fn wrong_wishes_are_refused() {
+    let place = Place::with_run();
+    for (wish, part) in [
+        ("--at -1", "--at"),
+        ("--at NaN", "--at"),
+        ("--seconds 0", "--seconds"),
+        ("--rate 7", "--rate"),
+        ("--rate 0", "--rate"),
+        ("--size 640", "640x360"),
+        ("--size 1x1", "640x360"),
+        ("--yaw inf", "--yaw"),
+        ("--pitch 90", "--pitch"),
+        ("--distance 0", "--distance"),
+        ("--episode 1000", "--episode"),
+    ] {
+        place.refused(&format!("render run -o one.gif {wish}"), 2, &[part]);
+    }
+}
+
+#[test]
+fn a_run_that_cannot_be_shown_says_why() {
+    let place = Place::with_run();
+    for program in ["render RUN -o one.png", "play RUN"] {
+        let words = |run: &str| program.replace("RUN", run);
+        place.refused(&words("nothing"), 1, &["nothing"]);
+        std::fs::create_dir_all(place.path("empty")).unwrap();
+        place.refused(&words("empty"), 1, &["config.toml"]);
+    }
+    let (here, there) = (place.path("small.footwork"), place.path("moved.footwork"));
+    std::fs::rename(&here, &there).unwrap();
+    for program in ["render run -o one.png", "play run", "eval run"] {
+        place.refused(program, 1, &["small.footwork", "--data"]);
+    }
+    place.done("render run -o one.png --data moved.footwork --size 64x48");
+    place.done("data synth --minutes 2 --out other.footwork");
+    place.refused(
+        "render run -o two.png --data other.footwork",
+        1,
+        &["another database"],
+    );
+    std::fs::remove_file(place.path("run/checkpoints/last.ckpt")).unwrap();
+    for program in [
+        "render run -o two.png --data moved.footwork",
+        "play run --data moved.footwork",
+    ] {
+        place.refused(program, 1, &["last.ckpt"]);
+    }
+}
+
+#[test]
+fn a_checkpoint_of_an_older_format_is_not_taken_for_a_damaged_one() {
+    let place = Place::with_run();
+    let path = place.path("run/checkpoints/last.ckpt");
+    let mut bytes = std::fs::read(&path).unwrap();
+    bytes[16..20].copy_from_slice(&1u32.to_le_bytes());
+    std::fs::write(&path, bytes).unwrap();
+    for program in ["render run -o one.png", "play run", "eval run"] {
+        place.refused(program, 1, &["format version 1", "make it again"]);
+    }
+}
