@@ -18,7 +18,7 @@ use std::path::PathBuf;
 /// Frames of the motion a second.
 const RATE: u32 = 30;
 /// How quickly the camera follows, a share a frame.
-const FOLLOW: f32 = 0.15;
+const FOLLOW: f32 = 0.2;
 
 #[derive(Args)]
 pub struct Render {

@@ -1,5 +1,7 @@
 //! The window: a controller at work, and why it does what it does.
 
+#[cfg(feature = "gamepad")]
+pub mod gamepad;
 pub mod maps;
 pub mod pace;
 pub mod runners_up;

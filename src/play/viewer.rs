@@ -1,5 +1,7 @@
 //! The window's contents.
 
+#[cfg(feature = "gamepad")]
+use super::gamepad::Gamepad;
 use super::maps;
 use super::runners_up::{Found, nearest};
 use super::screen::{Screen, Touch};
@@ -22,7 +24,7 @@ const RATE: f32 = 30.0;
 /// Frames played at once, at most, when drawing is slower than the motion.
 const CATCH_UP: f32 = 6.0;
 /// How quickly the camera follows, a share a frame.
-const FOLLOW: f32 = 0.15;
+const FOLLOW: f32 = 0.2;
 /// Pieces of motion listed.
 const LISTED: usize = 8;
 
@@ -57,6 +59,8 @@ pub struct Viewer {
     /// What went wrong last.
     problem: Option<String>,
     screen: Screen,
+    #[cfg(feature = "gamepad")]
+    gamepad: Option<Gamepad>,
 }
 
 impl Viewer {
@@ -97,6 +101,8 @@ impl Viewer {
             found_at: None,
             problem: None,
             screen: Screen::new(gpu, window),
+            #[cfg(feature = "gamepad")]
+            gamepad: Gamepad::open(),
         })
     }
 
@@ -150,22 +156,25 @@ impl Viewer {
         }
     }
 
-    /// Arrow keys or WASD: up is away from the camera. With shift the character runs.
+    /// Arrow keys or WASD, or a gamepad's stick: up is away from the camera. With shift or the right
+    /// shoulder the character runs.
     fn steer(&mut self, ui: &Ui) {
+        #[cfg(feature = "gamepad")]
+        if let Some(push) = self.gamepad.as_mut().and_then(Gamepad::push) {
+            return self.steer_to(push.right, push.away, push.run);
+        }
         let down = |keys: [Key; 2]| {
             let down = ui.input(|input| keys.iter().any(|&key| input.key_down(key)));
             f32::from(u8::from(down))
         };
         let right = down([Key::ArrowRight, Key::D]) - down([Key::ArrowLeft, Key::A]);
         let away = down([Key::ArrowUp, Key::W]) - down([Key::ArrowDown, Key::S]);
-        let pace = match ui.input(|input| input.modifiers.shift) {
-            true => source::RUN,
-            false => source::WALK,
-        };
-        self.steer_to(right, away, pace);
+        let run = ui.input(|input| input.modifiers.shift);
+        self.steer_to(right, away, run);
     }
 
-    fn steer_to(&mut self, right: f32, away: f32, pace: f32) {
+    /// Takes effect where the next step is decided, at the end of what has been played.
+    fn steer_to(&mut self, right: f32, away: f32, run: bool) {
         let now = self.timeline.now();
         if now.played != PLAYED || self.timeline.at() + 1 != self.timeline.len() {
             return;
@@ -174,6 +183,7 @@ impl Viewer {
         let Source::Steered(steered) = &mut self.source else {
             return;
         };
+        let pace = if run { source::RUN } else { source::WALK };
         steered.ease_to(pace * push.min(1.0));
         let at = now.shown.at;
         let direction = match push > 0.0 {

@@ -56,8 +56,8 @@ enum Part {
     Spine,
     /// Collar bones.
     Collar,
-    /// How many joints above the chest.
-    Head(usize),
+    /// The highest bone of it is the head.
+    Neck,
 }
 
 impl Body {
@@ -161,10 +161,8 @@ impl Anatomy<'_> {
             },
             Part::Spine => [0.115, 0.125],
             Part::Collar => return None,
-            Part::Head(depth) => match depth + tip {
-                0 | 1 => [0.055, 0.050],
-                _ => [0.075, 0.088],
-            },
+            Part::Neck if tip == 0 && !self.is_leaf(joint) => [0.055, 0.050],
+            Part::Neck => [0.070, 0.088],
         };
         let [a, b] = radii.map(|radius| self.scale * radius);
         Some(self.between(
@@ -251,7 +249,13 @@ impl Anatomy<'_> {
         if arms.iter().any(|&top| self.below(top, joint).is_some()) {
             return Part::Collar;
         }
-        self.below(joint, chest).map_or(Part::Spine, Part::Head)
+        self.below(joint, chest).map_or(Part::Spine, |_| Part::Neck)
+    }
+
+    fn is_leaf(&self, joint: usize) -> bool {
+        let parents = &self.skeleton.parents;
+        let end = self.skeleton.ends.iter().any(|&(at, _)| at == joint);
+        !end && !parents.contains(&Some(joint))
     }
 
     /// The lowest joint above both shoulders.

@@ -1,0 +1,80 @@
+//! Time of a picture, 1280 x 720: one character, one among obstacles, and crowds.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use footwork::gpu::{Device, Gpu};
+use footwork::motion::database::Database;
+use footwork::motion::normalise::Weights;
+use footwork::motion::performer;
+use footwork::playback::player::Style;
+use footwork::view::marks::scene;
+use footwork::view::rollout::{Rollout, Stage};
+use footwork::view::{Camera, Canvas, Crowd, Renderer, Scene};
+use footwork::world::{self, LEVELS, Obstacles, Plane, Setup, Task};
+use std::hint::black_box;
+use std::sync::Arc;
+
+struct Studio {
+    renderer: Renderer,
+    canvas: Canvas,
+    camera: Camera,
+}
+
+impl Studio {
+    fn draw(&mut self, scene: &Scene, crowd: Option<&Crowd>) {
+        self.renderer
+            .draw(black_box(scene), crowd, &self.camera, &self.canvas);
+        let wait = wgpu::PollType::wait_indefinitely();
+        self.renderer.device.poll(wait).expect("a picture");
+    }
+}
+
+fn pictures(criterion: &mut Criterion) {
+    let gpu = Gpu::drawing().expect("a GPU or lavapipe");
+    let (clips, roles) = performer::perform(1, 4.0);
+    let database = Database::build(&clips, roles, Weights::PAPER).expect("long enough");
+    let database = Arc::new(database);
+    let renderer = Renderer::new(&gpu);
+    let mut studio = Studio {
+        canvas: Canvas::new(&renderer.device, [1280, 720]),
+        camera: Camera::default(),
+        renderer,
+    };
+    let mut group = criterion.benchmark_group(&gpu.name);
+    let tasks = [
+        ("a character", Task::Plane(Plane::default())),
+        (
+            "a character among obstacles",
+            Task::Obstacles(Obstacles::FAST),
+        ),
+    ];
+    for (name, task) in tasks {
+        let stage = Stage::new(database.clone(), task, Style::BEST);
+        let scene = scene(&Rollout::new(&stage, 0), &stage);
+        group.bench_function(name, |bencher| bencher.iter(|| studio.draw(&scene, None)));
+    }
+    for envs in [256, 1024, 4096] {
+        let setup = Setup {
+            task: Task::Plane(Plane::default()),
+            envs,
+            horizon: 1,
+            seed: 1,
+            level: LEVELS - 1,
+        };
+        let mut world = world::open(&Device::from(gpu.clone()), &database, &setup);
+        let watched = world.watch().expect("a device");
+        let crowd = Crowd::new(&studio.renderer, &database, watched, envs);
+        studio.camera.distance = 8.0 + 0.6 * crowd.side;
+        studio.camera.pitch = 0.5;
+        let scene = Scene::default();
+        group.bench_function(format!("a crowd of {envs}"), |bencher| {
+            bencher.iter(|| studio.draw(&scene, Some(&crowd)));
+        });
+    }
+}
+
+criterion_group! {
+    name = view;
+    config = Criterion::default().sample_size(10);
+    targets = pictures
+}
+criterion_main!(view);

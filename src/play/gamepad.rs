@@ -1,0 +1,38 @@
+//! The stick of a gamepad.
+
+use gilrs::{Axis, Button, Gilrs};
+
+/// A stick nearer to its middle than this rests there.
+const REST: f32 = 0.15;
+
+pub struct Gamepad(Gilrs);
+
+/// A stick pushed: to the right and away from the player, 1 at most together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    pub right: f32,
+    pub away: f32,
+    /// Whether the right shoulder button or trigger is held.
+    pub run: bool,
+}
+
+impl Gamepad {
+    /// `None` where the system has no gamepads to offer.
+    pub fn open() -> Option<Gamepad> {
+        Gilrs::new().ok().map(Gamepad)
+    }
+
+    /// The left stick of the first gamepad that pushes it.
+    pub fn push(&mut self) -> Option<Push> {
+        while self.0.next_event().is_some() {}
+        self.0.gamepads().find_map(|(_, pad)| {
+            let run = [Button::RightTrigger, Button::RightTrigger2];
+            let push = Push {
+                right: pad.value(Axis::LeftStickX),
+                away: pad.value(Axis::LeftStickY),
+                run: run.iter().any(|&button| pad.is_pressed(button)),
+            };
+            (push.right.hypot(push.away) > REST).then_some(push)
+        })
+    }
+}
