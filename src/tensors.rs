@@ -31,3 +31,31 @@ pub fn upload<const D: usize>(values: Vec<f32>, shape: [usize; D], device: &Devi
 pub fn vector(values: &[f32], device: &Device) -> Tensor<1> {
     upload(values.to_vec(), [values.len()], device)
 }
+
+/// Numbers summed by one invocation: lavapipe's stop, silently, after 65,535.
+const ROW: usize = 512;
+
+/// The sum of a vector, `[1]`, in two stages. burn's own walks a long vector in few invocations, of
+/// which lavapipe leaves the rest out.
+pub fn sum(values: Tensor<1>) -> Tensor<1> {
+    let length = values.dims()[0];
+    let whole = length / ROW * ROW;
+    if whole == 0 {
+        return values.sum_dim(0);
+    }
+    let rows: Tensor<2> = values
+        .clone()
+        .narrow(0, 0, whole)
+        .reshape([whole / ROW, ROW]);
+    let sum = rows.sum_dim(1).sum_dim(0).squeeze_dim(1);
+    match whole == length {
+        true => sum,
+        false => sum.add(values.narrow(0, whole, length - whole).sum_dim(0)),
+    }
+}
+
+/// The mean of a vector, `[1]`.
+pub fn mean(values: Tensor<1>) -> Tensor<1> {
+    let length = values.dims()[0];
+    sum(values).mul_scalar(1.0 / length as f64)
+}

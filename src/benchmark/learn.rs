@@ -1,30 +1,38 @@
-//! The policy network of both tasks' preset `fast`: its mean for many observations at once.
+//! The networks of both tasks' preset `fast`: the policy's mean for many observations at once, and
+//! learning from a whole rollout.
 
 use super::clock::{TOO_LONG_S, Work, seconds};
+use super::training::{config, held};
 use super::{Bench, ENVS, Item, Record};
+use crate::motion::features::TRAJECTORY;
 use crate::ppo::network::Shape;
+use crate::ppo::rollout::Rollout;
 use crate::ppo::update::Learner;
+use crate::tensors::read;
 use crate::train::config::{Config, Kind, Preset};
 use anyhow::{Context, Result};
-use burn::tensor::Tensor;
+use burn::tensor::{Device, Distribution, Tensor};
 
 pub fn measure(bench: &Bench, record: &mut Record) -> Result<()> {
-    if !bench.plan.wants("network") {
-        return Ok(());
-    }
-    for kind in [Kind::Plane, Kind::Obstacles] {
-        let mut last = 0.0;
-        for envs in ENVS {
-            let numbers = envs * Config::preset(kind, Preset::Fast).task.width();
-            let held = bench.place.device.holds("observations", numbers).is_ok();
-            if 4.0 * last > TOO_LONG_S || !held {
-                break;
+    for (stage, measure) in [("network", forward as Stage), ("update", update)] {
+        if !bench.plan.wants(stage) {
+            continue;
+        }
+        for kind in [Kind::Plane, Kind::Obstacles] {
+            let mut last = 0.0;
+            for envs in ENVS {
+                if 4.0 * last > TOO_LONG_S || !held(bench, kind, envs) {
+                    break;
+                }
+                last = measure(bench, kind, envs, record)?;
             }
-            last = forward(bench, kind, envs, record)?;
         }
     }
     Ok(())
 }
+
+/// Measures with so many environments and returns the seconds it takes once.
+type Stage = fn(&Bench, Kind, usize, &mut Record) -> Result<f64>;
 
 fn forward(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Result<f64> {
     let Bench { place, ceiling, .. } = *bench;
@@ -59,4 +67,62 @@ fn forward(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Resul
     };
     record.add(place, ceiling, item, time);
     Ok(time)
+}
+
+/// An update from a rollout of noise.
+fn update(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Result<f64> {
+    let Bench { place, ceiling, .. } = *bench;
+    let config = config(kind, envs);
+    let (ppo, width) = (&config.ppo, config.task.width());
+    (record.tell)(&format!(
+        "{}: update, {} of {envs}",
+        place.name(),
+        config.task.name()
+    ));
+    let shape = Shape::new(&ppo.network, width).context("a network")?;
+    let time = place.inside(|| -> Result<f64> {
+        let tensors = place.device.tensors();
+        let mut learner = Learner::new(ppo, width, &tensors, 1)?;
+        let rollout = noise(ppo.batch(), width, &tensors);
+        seconds(place, || {
+            read(learner.update(&rollout, ppo))?;
+            Ok(())
+        })
+    })?;
+    let item = Item {
+        stage: "update",
+        variant: config.task.name(),
+        frames: 0,
+        envs,
+        batch: ppo.batch(),
+        bytes: Some(4 * 3 * shape.parameters()),
+        work: Work {
+            bytes: 0.0,
+            // Forward, and twice as much back, in every pass.
+            operations: (3 * ppo.epochs * shape.operations()) as f64,
+        },
+    };
+    record.add(place, ceiling, item, time);
+    Ok(time)
+}
+
+/// A rollout of `samples` that learning takes in as any other.
+fn noise(samples: usize, width: usize, device: &Device) -> Rollout {
+    let rows = |width: usize| {
+        Tensor::<2>::random([samples, width], Distribution::Normal(0.0, 1.0), device)
+    };
+    let scalars = || rows(1).squeeze_dim::<1>(1);
+    Rollout {
+        observation: rows(width),
+        action: rows(TRAJECTORY),
+        mean: rows(TRAJECTORY),
+        // About what such actions have.
+        log_prob: scalars().sub_scalar(20.0),
+        value: scalars(),
+        advantage: scalars(),
+        target: scalars(),
+        log_std: Tensor::zeros([TRAJECTORY], device),
+        act_s: 0.0,
+        simulate_s: 0.0,
+    }
 }

@@ -49,7 +49,7 @@ pub struct Row {
 }
 
 /// Names for `--filter`.
-pub const STAGES: [&str; 8] = [
+pub const STAGES: [&str; 9] = [
     "memory",
     "arithmetic",
     "search",
@@ -57,6 +57,7 @@ pub const STAGES: [&str; 8] = [
     "hits",
     "environment",
     "network",
+    "update",
     "training",
 ];
 

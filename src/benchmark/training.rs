@@ -27,7 +27,7 @@ pub fn measure(bench: &Bench, record: &mut Record) -> Result<()> {
 }
 
 /// The preset `fast` with so many environments; minibatches grow with them.
-fn config(kind: Kind, envs: usize) -> Config {
+pub(super) fn config(kind: Kind, envs: usize) -> Config {
     let mut config = Config::preset(kind, Preset::Fast);
     config.ppo.minibatch = config.ppo.minibatch * envs / config.ppo.envs;
     config.ppo.envs = envs;
@@ -35,7 +35,7 @@ fn config(kind: Kind, envs: usize) -> Config {
 }
 
 /// Whether the device reaches a rollout's observations, packed with what else a sample has.
-fn held(bench: &Bench, kind: Kind, envs: usize) -> bool {
+pub(super) fn held(bench: &Bench, kind: Kind, envs: usize) -> bool {
     let config = config(kind, envs);
     let numbers = config.ppo.batch() * (config.task.width() + 2 * TRAJECTORY + 4);
     bench.place.device.holds("samples", numbers).is_ok()

@@ -15,7 +15,7 @@ use std::time::Duration;
 #[derive(Args)]
 pub struct Bench {
     /// Only stages with this in their name: memory, arithmetic, search, rasterise, hits, environment,
-    /// network, training
+    /// network, update, training
     #[arg(
         long,
         value_name = "NAME",

@@ -2,7 +2,9 @@
 //! itself and keys its state by random names; one vector makes the norm of the whole gradient a
 //! single operation on the device and the state two plain arrays of a checkpoint.
 
+use crate::tensors::sum;
 use burn::tensor::{Device, Tensor};
+use multiversion::multiversion;
 
 const BETA_1: f64 = 0.9;
 const BETA_2: f64 = 0.999;
@@ -65,11 +67,47 @@ impl Adam {
 }
 
 fn clip(gradient: Tensor<1>, max_norm: f64) -> Tensor<1> {
-    let norm = gradient.clone().square().sum_dim(0).sqrt();
+    let norm = sum(gradient.clone().square()).sqrt();
     gradient.mul(
         norm.add_scalar(1e-6)
             .recip()
             .mul_scalar(max_norm)
             .clamp_max(1.0),
     )
+}
+
+/// [`Adam::step`] on the CPU: the `steps`-th.
+#[multiversion(targets("x86_64+avx512f+avx512vl+fma", "x86_64+avx2+fma", "aarch64+neon"))]
+pub fn step(
+    parameters: &mut [f32],
+    gradient: &[f32],
+    first: &mut [f32],
+    second: &mut [f32],
+    steps: u64,
+    rate: f64,
+    max_norm: f64,
+) {
+    // Several sums at once, so that they need not wait for each other.
+    let mut squares = [0f64; 16];
+    for (i, gradient) in gradient.iter().enumerate() {
+        squares[i % 16] += f64::from(*gradient) * f64::from(*gradient);
+    }
+    let norm = squares.iter().sum::<f64>().sqrt();
+    let cut = match max_norm > 0.0 {
+        true => (max_norm / (norm + 1e-6)).min(1.0) as f32,
+        false => 1.0,
+    };
+    let steps = steps.min(i32::MAX as u64) as i32;
+    let [keep_1, keep_2] = [BETA_1, BETA_2].map(|beta| beta as f32);
+    let [take_1, take_2] = [BETA_1, BETA_2].map(|beta| (1.0 - beta) as f32);
+    let rate = (rate / (1.0 - BETA_1.powi(steps))) as f32;
+    let unbias = (1.0 / (1.0 - BETA_2.powi(steps))) as f32;
+    let moments = first.iter_mut().zip(second.iter_mut());
+    for ((parameter, gradient), (first, second)) in parameters.iter_mut().zip(gradient).zip(moments)
+    {
+        let gradient = gradient * cut;
+        *first = keep_1 * *first + take_1 * gradient;
+        *second = keep_2 * *second + take_2 * gradient * gradient;
+        *parameter -= rate * *first / ((*second * unbias).sqrt() + EPSILON as f32);
+    }
 }

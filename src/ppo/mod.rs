@@ -1,17 +1,19 @@
-//! Proximal policy optimisation (Schulman et al. 2017) in burn's tensors: the same code on the
-//! GPU and on the CPU.
+//! Proximal policy optimisation (Schulman et al. 2017) in burn's tensors on a GPU, and in
+//! kernels of its own on the CPU.
 //!
-//! [`network`] is the form of the networks, [`policy`] holds them, [`convolution`] runs their eyes on
-//! the CPU, [`rollout`] lets them act, [`study`] takes their gradients, [`update`] improves them with
-//! [`adam`], [`scale`] keeps the critic's targets near one.
+//! [`network`] is the form of the networks, of [`layer`]s, [`policy`] holds them, [`rollout`] lets them
+//! act, [`update`] improves them by the gradients of a [`loss`] with [`adam`], [`scale`] keeps the
+//! critic's targets near one. On the CPU [`native`] does what burn's tensors do elsewhere.
 
 pub mod adam;
-pub mod convolution;
+pub mod layer;
+pub mod loss;
+pub mod native;
 pub mod network;
 pub mod policy;
 pub mod rollout;
 pub mod scale;
-pub mod study;
+mod study;
 pub mod update;
 
 use serde::{Deserialize, Serialize};

@@ -3,7 +3,7 @@
 //! On the plane: dense layers, tanh. Among obstacles the maps go through convolutions and dense
 //! layers of their own, and join the rest; ReLU everywhere (paper, figure 3).
 
-use super::convolution::{self, Convolution, Layer};
+use super::layer::{Bend, Convolution, Layer, floats};
 use crate::kernels::layout::{CELLS, GOAL, MAPS};
 use crate::kernels::rng::{gaussian, random4};
 use crate::motion::features::TRAJECTORY;
@@ -32,116 +32,133 @@ pub struct Shape {
 
 /// One network, made of layers of some kind.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Net<T> {
+pub struct Net<T> {
     /// Whether there are maps to see.
     pub sees: bool,
-    pub eyes: Vec<Layer>,
-    pub convolutions: Vec<T>,
+    /// From the maps to what joins the rest of the observation: convolutions, then dense layers.
     pub sight: Vec<T>,
+    /// From there to the answer.
     pub hidden: Vec<T>,
 }
 
 /// Where a layer's weights, then its biases lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
-    /// Numbers that come together in each of its outputs.
-    pub inputs: usize,
-    pub outputs: usize,
+pub struct Place {
+    pub layer: Layer,
     start: usize,
 }
 
 impl Place {
     pub fn weights(&self) -> Range<usize> {
-        self.start..self.start + self.inputs * self.outputs
+        self.start..self.start + self.layer.patch() * self.layer.filters()
     }
 
     pub fn biases(&self) -> Range<usize> {
         let start = self.weights().end;
-        start..start + self.outputs
+        start..start + self.layer.filters()
     }
 }
 
 impl<T> Net<T> {
     /// All layers, in the flat vector's order.
     pub fn layers(&self) -> impl Iterator<Item = &T> {
-        let convolutions = self.convolutions.iter();
-        convolutions.chain(&self.sight).chain(&self.hidden)
+        self.sight.iter().chain(&self.hidden)
     }
 
-    pub fn map<U>(&self, mut f: impl FnMut(&T) -> U) -> Net<U> {
+    pub fn map<U>(&self, f: impl Fn(&T) -> U) -> Net<U> {
         Net {
             sees: self.sees,
-            eyes: self.eyes.clone(),
-            convolutions: self.convolutions.iter().map(&mut f).collect(),
-            sight: self.sight.iter().map(&mut f).collect(),
-            hidden: self.hidden.iter().map(&mut f).collect(),
+            sight: self.sight.iter().map(&f).collect(),
+            hidden: self.hidden.iter().map(&f).collect(),
         }
+    }
+}
+
+impl Net<Place> {
+    fn operations(&self) -> usize {
+        self.layers().map(|place| place.layer.operations()).sum()
+    }
+
+    /// All its parameters.
+    pub fn span(&self) -> Range<usize> {
+        let start = self.layers().next().map_or(0, |first| first.start);
+        start..self.layers().last().map_or(0, |last| last.biases().end)
     }
 }
 
 impl Network {
     /// The layers of the convolutions over the maps; none if a filter does not fit its input.
     pub fn eyes(&self) -> Option<Vec<Layer>> {
-        convolution::chain([CELLS, CELLS, MAPS], &self.convolutions)
+        let mut inputs = [CELLS, CELLS, MAPS];
+        let layers = self.convolutions.iter().map(|&convolution| {
+            let layer = Layer::convolution(inputs, convolution, Bend::Relu)?;
+            inputs = layer.outputs();
+            Some(layer)
+        });
+        layers.collect()
+    }
+
+    /// The layers of a network that answers with `answers` numbers.
+    fn net(&self, sees: bool, answers: usize) -> Option<Net<Layer>> {
+        let bend = if sees { Bend::Relu } else { Bend::Tanh };
+        let mut sight = if sees { self.eyes()? } else { Vec::new() };
+        let maps = if sees { CELLS * CELLS * MAPS } else { 0 };
+        let mut inputs = sight.last().map_or(maps, |layer| floats(layer.outputs()));
+        if sees {
+            for &outputs in &self.sight {
+                sight.push(Layer::dense(inputs, outputs, bend));
+                inputs = outputs;
+            }
+        }
+        inputs += GOAL;
+        let mut hidden = Vec::with_capacity(self.hidden.len() + 1);
+        for &outputs in &self.hidden {
+            hidden.push(Layer::dense(inputs, outputs, bend));
+            inputs = outputs;
+        }
+        hidden.push(Layer::dense(inputs, answers, Bend::None));
+        Some(Net {
+            sees,
+            sight,
+            hidden,
+        })
     }
 }
 
 impl Shape {
     /// For observations of `width` numbers; none if a filter of the network does not fit its input.
     pub fn new(network: &Network, width: usize) -> Option<Self> {
-        let mut end = 0;
-        let mut place = |inputs: usize, outputs: usize| {
-            let place = Place {
-                inputs,
-                outputs,
-                start: end,
-            };
-            end = place.biases().end;
-            place
-        };
         let sees = width > GOAL;
-        let eyes = if sees { network.eyes()? } else { Vec::new() };
-        let mut net = |ends: usize| {
-            let convolutions = eyes.iter().map(|layer| {
-                let filters = layer.filters();
-                place(layer.weights() / filters, filters)
-            });
-            let convolutions = convolutions.collect();
-            let mut inputs = eyes
-                .last()
-                .map_or(width - GOAL, |layer| layer.outputs().iter().product());
-            let mut dense =
-                |outputs: usize| place(std::mem::replace(&mut inputs, outputs), outputs);
-            let sight = if sees { &network.sight[..] } else { &[] };
-            let sight = sight.iter().map(|&outputs| dense(outputs)).collect();
-            inputs += GOAL;
-            let mut dense =
-                |outputs: usize| place(std::mem::replace(&mut inputs, outputs), outputs);
-            let hidden = network.hidden.iter().chain([&ends]);
-            let hidden = hidden.map(|&outputs| dense(outputs)).collect();
+        let mut start = 0;
+        let mut place = |net: Net<Layer>| {
+            let mut place = |layer: Layer| {
+                let place = Place { layer, start };
+                start = place.biases().end;
+                place
+            };
             Net {
                 sees,
-                eyes: eyes.clone(),
-                convolutions,
-                sight,
-                hidden,
+                sight: net.sight.into_iter().map(&mut place).collect(),
+                hidden: net.hidden.into_iter().map(&mut place).collect(),
             }
         };
-        let (actor, critic) = (net(TRAJECTORY), net(1));
+        let actor = place(network.net(sees, TRAJECTORY)?);
+        let critic = place(network.net(sees, 1)?);
         Some(Shape {
+            log_std: critic.span().end,
             actor,
             critic,
-            log_std: end,
         })
+    }
+
+    /// Multiplications and additions of both networks for one observation.
+    pub fn operations(&self) -> usize {
+        self.actor.operations() + self.critic.operations()
     }
 
     /// Multiplications and additions of the actor for one observation.
     pub fn actor_operations(&self) -> usize {
-        let net = &self.actor;
-        let places = |layer: &Layer| layer.outputs().iter().product::<usize>() / layer.filters();
-        let eyes = net.eyes.iter().map(|layer| layer.weights() * places(layer));
-        let dense = net.sight.iter().chain(&net.hidden);
-        2 * (eyes.sum::<usize>() + dense.map(|at| at.inputs * at.outputs).sum::<usize>())
+        self.actor.operations()
     }
 
     /// Length of the flat vector.
@@ -161,7 +178,7 @@ impl Shape {
             let gain = if net.sees { 2f32.sqrt() } else { 1.0 };
             for (at, place) in net.layers().enumerate() {
                 let gain = if at + 1 == depth { LAST_GAIN } else { gain };
-                let deviation = gain / (place.inputs as f32).sqrt();
+                let deviation = gain / (place.layer.patch() as f32).sqrt();
                 for at in place.weights() {
                     flat[at] = deviation * gaussian(random4(seed, at as u32, 0, STREAM));
                 }

@@ -1,9 +1,11 @@
 //! Policy and critic: two separate networks of the same form with linear ends, and the logarithm
 //! of the actions' standard deviation.
 
-use super::convolution;
+use super::layer::{Bend, Layer, floats};
+use super::native;
 use super::network::{Net, Place, Shape};
-use crate::kernels::layout::{CELLS, GOAL, MAPS};
+use crate::kernels::layout::GOAL;
+use crate::motion::features::TRAJECTORY;
 use crate::tensors::{upload, values};
 use burn::tensor::module::{conv2d, linear};
 use burn::tensor::ops::ConvOptions;
@@ -13,141 +15,143 @@ use std::ops::Range;
 impl Shape {
     /// Cuts the flat vector into its tensors.
     pub fn cut(&self, flat: &Tensor<1>) -> Policy {
-        let part = |range: Range<usize>| flat.clone().slice([range]);
-        let dense = |place: &Place| Dense {
-            weights: part(place.weights()).reshape([place.inputs, place.outputs]),
-            biases: part(place.biases()),
+        let dense = |place: &Place| Dense::cut(place, flat);
+        let networks = match on_cpu(&flat.device()) {
+            true => Networks::Native {
+                shape: self.clone(),
+                flat: values(flat.clone()),
+            },
+            false => Networks::Burn {
+                actor: self.actor.map(dense),
+                critic: self.critic.map(dense),
+            },
         };
         Policy {
-            actor: self.actor.map(dense),
-            critic: self.critic.map(dense),
-            log_std: part(self.log_std..self.parameters()),
+            networks,
+            log_std: flat.clone().narrow(0, self.log_std, TRAJECTORY),
         }
     }
 }
 
-/// A layer's parameters: weights `[inputs, outputs]` and biases `[outputs]`. The inputs of a
-/// convolution are those of a patch, `[row][column][channel]`.
+/// Whether the networks run here and not in burn.
+pub(super) fn on_cpu(device: &Device) -> bool {
+    *device == Device::flex()
+}
+
+/// A layer's parameters: weights `[patch][filters]` and biases `[filters]`.
 pub(super) struct Dense {
+    pub layer: Layer,
     pub weights: Tensor<2>,
     pub biases: Tensor<1>,
 }
 
-impl Dense {
-    fn apply(&self, input: Tensor<2>) -> Tensor<2> {
-        linear(input, self.weights.clone(), Some(self.biases.clone()))
-    }
-}
-
-/// The parameters as tensors.
 pub struct Policy {
-    pub(super) actor: Net<Dense>,
-    pub(super) critic: Net<Dense>,
+    networks: Networks,
     /// `[TRAJECTORY]`.
     pub log_std: Tensor<1>,
+}
+
+enum Networks {
+    Burn {
+        actor: Net<Dense>,
+        critic: Net<Dense>,
+    },
+    Native {
+        shape: Shape,
+        flat: Vec<f32>,
+    },
 }
 
 impl Policy {
     /// Mean action `[n, TRAJECTORY]` for observations `[n, width]`.
     pub fn mean(&self, observation: Tensor<2>) -> Tensor<2> {
-        self.actor.answer(observation)
+        match &self.networks {
+            Networks::Burn { actor, .. } => actor.answer(observation),
+            Networks::Native { shape, flat } => natively(&shape.actor, flat, observation),
+        }
     }
 
     /// The critic's normalised value `[n]`.
     pub fn value(&self, observation: Tensor<2>) -> Tensor<1> {
-        self.critic.answer(observation).squeeze_dim::<1>(1)
+        let answer = match &self.networks {
+            Networks::Burn { critic, .. } => critic.answer(observation),
+            Networks::Native { shape, flat } => natively(&shape.critic, flat, observation),
+        };
+        answer.squeeze_dim::<1>(1)
     }
+}
+
+fn natively(net: &Net<Place>, flat: &[f32], observation: Tensor<2>) -> Tensor<2> {
+    let ([samples, width], device) = (observation.dims(), observation.device());
+    let answers = native::answer(net, flat, &values(observation), width);
+    let each = answers.len() / samples;
+    upload(answers, [samples, each], &device)
 }
 
 impl Net<Dense> {
-    fn answer(&self, observation: Tensor<2>) -> Tensor<2> {
-        let (goal, maps) = split(&observation);
-        let seen = match self.native(&maps) {
+    /// `[n, ..]` for observations `[n, width]`.
+    pub fn answer(&self, observation: Tensor<2>) -> Tensor<2> {
+        let width = observation.dims()[1];
+        let goal = observation.clone().narrow(1, 0, GOAL);
+        let joined = match self.sees {
             true => {
-                let seen =
-                    convolution::forward(&self.eyes, &borrow(&self.filters()), &values(maps));
-                let seen = seen.into_iter().next_back().unwrap_or_default();
-                rows(seen, observation.dims()[0], &observation.device())
+                let maps = observation.narrow(1, GOAL, width - GOAL);
+                Tensor::cat(vec![goal, through(&self.sight, maps)], 1)
             }
-            false => self.convolve(maps),
+            false => goal,
         };
-        self.decide(goal, seen)
+        through(&self.hidden, joined)
     }
+}
 
-    /// Whether the convolutions run here and not in burn: on the CPU its own are several times
-    /// slower.
-    pub fn native(&self, maps: &Tensor<2>) -> bool {
-        !self.eyes.is_empty() && maps.device() == Device::flex()
-    }
+fn through(layers: &[Dense], input: Tensor<2>) -> Tensor<2> {
+    layers.iter().fold(input, |x, layer| layer.apply(x))
+}
 
-    /// Weights and biases of the convolutions on the host.
-    pub fn filters(&self) -> Vec<convolution::Gradients> {
-        let layers = self.convolutions.iter();
-        layers
-            .map(|layer| (values(layer.weights.clone()), values(layer.biases.clone())))
-            .collect()
-    }
-
-    /// The convolutions by burn, `[n, height * width * filters]`.
-    pub fn convolve(&self, maps: Tensor<2>) -> Tensor<2> {
-        let samples = maps.dims()[0];
-        if self.eyes.is_empty() {
-            return maps;
+impl Dense {
+    /// Of the flat vector.
+    pub fn cut(place: &Place, flat: &Tensor<1>) -> Dense {
+        let part = |range: Range<usize>| flat.clone().slice([range]);
+        let layer = place.layer;
+        Dense {
+            layer,
+            weights: part(place.weights()).reshape([layer.patch(), layer.filters()]),
+            biases: part(place.biases()),
         }
-        let maps: Tensor<4> = maps.reshape([samples, CELLS, CELLS, MAPS]);
-        let mut x = maps.permute([0, 3, 1, 2]);
-        for (eye, layer) in self.eyes.iter().zip(&self.convolutions) {
-            let (size, stride) = (eye.convolution().size, eye.convolution().stride);
-            let weights: Tensor<4> =
-                layer
-                    .weights
-                    .clone()
-                    .reshape([size, size, eye.inputs()[2], eye.filters()]);
-            let options = ConvOptions::new([stride; 2], [0; 2], [1; 2], 1);
-            let weights = weights.permute([3, 2, 0, 1]);
-            x = relu(conv2d(x, weights, Some(layer.biases.clone()), options));
-        }
-        x.permute([0, 2, 3, 1]).flatten::<2>(1, 3)
     }
 
-    /// From what was seen `[n, ..]` and the rest of the observation `[n, GOAL]` to the answer.
-    pub fn decide(&self, goal: Tensor<2>, seen: Tensor<2>) -> Tensor<2> {
-        let bend = |x: Tensor<2>| if self.sees { relu(x) } else { x.tanh() };
-        let seen = self
-            .sight
-            .iter()
-            .fold(seen, |x, layer| relu(layer.apply(x)));
-        let joined = if self.sees {
-            Tensor::cat(vec![goal, seen], 1)
-        } else {
-            goal
+    fn apply(&self, input: Tensor<2>) -> Tensor<2> {
+        let (weights, biases) = (self.weights.clone(), Some(self.biases.clone()));
+        let sums = match self.layer.is_dense() {
+            true => linear(input, weights, biases),
+            false => convolve(&self.layer, input, weights, biases),
         };
-        let last = self.hidden.len() - 1;
-        let hidden = self.hidden[..last].iter();
-        let hidden = hidden.fold(joined, |x, layer| bend(layer.apply(x)));
-        self.hidden[last].apply(hidden)
+        match self.layer.bend() {
+            Bend::Relu => relu(sums),
+            Bend::Tanh => sums.tanh(),
+            Bend::None => sums,
+        }
     }
 }
 
-/// The maps of an observation `[n, width]` after the rest.
-pub(super) fn split(observation: &Tensor<2>) -> (Tensor<2>, Tensor<2>) {
-    let width = observation.dims()[1];
-    let goal = observation.clone().narrow(1, 0, GOAL);
-    if width == GOAL {
-        return (goal.clone(), goal);
-    }
-    (goal, observation.clone().narrow(1, GOAL, width - GOAL))
-}
-
-pub(super) fn borrow(filters: &[convolution::Gradients]) -> Vec<convolution::Parameters<'_>> {
-    let slices = filters.iter();
-    slices
-        .map(|(weights, biases)| (&weights[..], &biases[..]))
-        .collect()
-}
-
-/// `count` rows.
-pub(super) fn rows(values: Vec<f32>, count: usize, device: &Device) -> Tensor<2> {
-    let width = values.len() / count;
-    upload(values, [count, width], device)
+/// Inputs and outputs `[n, height * width * channels]`, channels last.
+fn convolve(
+    layer: &Layer,
+    input: Tensor<2>,
+    weights: Tensor<2>,
+    biases: Option<Tensor<1>>,
+) -> Tensor<2> {
+    let ([height, width, channels], samples) = (layer.inputs(), input.dims()[0]);
+    let input: Tensor<4> = input.reshape([samples, height, width, channels]);
+    let size = layer.size();
+    let weights: Tensor<4> = weights.reshape([size, size, channels, layer.filters()]);
+    let options = ConvOptions::new([layer.stride(); 2], [0; 2], [1; 2], 1);
+    let output = conv2d(
+        input.permute([0, 3, 1, 2]),
+        weights.permute([3, 2, 0, 1]),
+        biases,
+        options,
+    );
+    let output = output.permute([0, 2, 3, 1]);
+    output.reshape([samples, floats(layer.outputs())])
 }

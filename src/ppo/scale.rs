@@ -1,6 +1,7 @@
 //! Keeps the critic's targets near zero mean and unit deviation (the +1000 of arriving would
 //! drown it otherwise). Lives on the device: a tensor of two numbers.
 
+use crate::tensors::mean;
 use burn::tensor::{Device, Tensor};
 
 /// Share of the newest rollout in the running statistics.
@@ -41,7 +42,7 @@ impl Scale {
         self.updates += 1;
         let share = NEWEST.max(1.0 / self.updates as f64);
         let newest = Tensor::cat(
-            vec![targets.clone().mean(), targets.clone().square().mean()],
+            vec![mean(targets.clone()), mean(targets.clone().square())],
             0,
         );
         self.moments = self

@@ -3,7 +3,7 @@
 use crate::gpu::Choice;
 use crate::motion::normalise::Weights;
 use crate::ppo::Ppo;
-use crate::ppo::convolution::Convolution;
+use crate::ppo::layer::Convolution;
 use crate::ppo::network::Network;
 use crate::world::{Obstacles, Plane, Task};
 use clap::ValueEnum;
@@ -264,6 +264,8 @@ fn check_obstacles(task: &Obstacles, envs: usize) -> Result<(), ConfigError> {
             ),
         });
     }
+    within("obstacles.edge", task.edge, 0.0, 100.0)?;
+    within("obstacles.look_back", task.look_back, 0.0, 10.0)?;
     within("obstacles.speed", task.speed, 0.0, 100.0)?;
     let (first, last) = (task.half_side_first, task.half_side_last);
     within("obstacles.half_side_first", first, 0.1, 1000.0)?;

@@ -275,7 +275,7 @@ impl<'a> Run<'a> {
         )?;
         let losses = self.learner.update(&rollout, ppo);
         // The one read-back of an update. The parameters' sum shows whether the last step broke them.
-        let parameters = self.learner.parameters.clone().sum_dim(0);
+        let parameters = tensors::sum(self.learner.parameters.clone());
         let numbers = Tensor::cat(vec![losses, self.world.tally(), parameters], 0);
         let numbers = tensors::read(numbers)?;
         self.steps += ppo.batch() as u64;

@@ -43,6 +43,14 @@ pub fn tile<K: Kernel>(kernel: &mut K, rows: usize, lanes: usize) {
         column::<4, 16>(kernel, rows, lane);
         lane += 16;
     }
+    while lanes - lane >= 8 {
+        column::<8, 8>(kernel, rows, lane);
+        lane += 8;
+    }
+    while lanes - lane >= 4 {
+        column::<8, 4>(kernel, rows, lane);
+        lane += 4;
+    }
     for lane in lane..lanes {
         column::<8, 1>(kernel, rows, lane);
     }
@@ -80,6 +88,8 @@ pub struct Forward<'a> {
     /// `[size][run][filters]`
     pub weights: &'a [f32],
     pub biases: &'a [f32],
+    /// Smaller sums are raised to it.
+    pub least: f32,
     pub output: &'a mut [f32],
 }
 
@@ -103,7 +113,8 @@ impl Kernel for Forward<'_> {
     #[inline(always)]
     fn store<const LANES: usize>(&mut self, row: usize, lane: usize, sums: &[f32; LANES]) {
         let output = &mut self.output[row * self.biases.len() + lane..][..LANES];
-        output.copy_from_slice(&sums.map(|sum| if sum > 0.0 { sum } else { 0.0 }));
+        let least = self.least;
+        output.copy_from_slice(&sums.map(|sum| if sum > least { sum } else { least }));
     }
 }
 
