@@ -6,10 +6,15 @@ use super::leg::{Leg, legs};
 use super::pose::Pose;
 use super::shown::Shown;
 use super::stitch::{Stitch, Stitching};
-use super::two_joint::reach;
+use super::two_joint;
 use crate::motion::database::Database;
 use glam::Vec3;
 use std::sync::Arc;
+
+/// Hips come down for a foot by this much at most, m.
+const LOWEST: f32 = 0.12;
+/// What is left of that a frame after no foot needs it any more.
+const RISE: f32 = 0.85;
 
 /// What all players of one database share.
 #[derive(Debug)]
@@ -60,6 +65,8 @@ pub struct Player {
     shown: Shown,
     stitch: Stitch,
     locks: [FootLock; 2],
+    /// By how much the hips are lower than the motion has them, m.
+    lowered: f32,
 }
 
 impl Player {
@@ -73,6 +80,7 @@ impl Player {
             shown,
             stitch,
             locks: Default::default(),
+            lowered: 0.0,
         }
     }
 
@@ -92,17 +100,30 @@ impl Player {
         pose
     }
 
-    /// Holds the standing feet, and keeps both above the ground.
+    /// Holds the standing feet, and keeps both above the ground; where a leg is too short for that, the
+    /// hips come down.
     fn lock(&mut self, pose: &mut Pose, recorded: &[Sole; 2]) {
         let skeleton = &self.database.skeleton;
         let (positions, rotations) = pose.world(skeleton);
+        let mut targets = [Vec3::ZERO; 2];
+        let mut lack = 0.0_f32;
         for (side, leg) in self.feet.legs.iter().enumerate() {
             let sole = Sole::of(leg, &positions, &rotations);
             let contact = self.feet.contacts[self.shown.frame][side];
             let held = self.locks[side].next(&sole, &recorded[side], contact);
             let sunk = -held.y - sole.heel.y.min(sole.toe.y);
-            let lifted = Vec3::Y * sunk.max(0.0);
-            reach(skeleton, pose, leg, positions[leg.foot] + held + lifted);
+            let foot = positions[leg.foot];
+            targets[side] = foot + held + Vec3::Y * sunk.max(0.0);
+            if contact != Contact::Air {
+                let length = skeleton.reach(leg.hip, leg.foot);
+                let lacks = two_joint::lack(positions[leg.hip], foot, targets[side], length);
+                lack = lack.max(lacks.unwrap_or(0.0).min(LOWEST));
+            }
+        }
+        self.lowered = lack.max(RISE * self.lowered);
+        pose.root.y -= self.lowered;
+        for (leg, target) in self.feet.legs.iter().zip(targets) {
+            two_joint::reach(skeleton, pose, leg, target);
         }
     }
 }

@@ -43,6 +43,15 @@ pub fn reach(skeleton: &Skeleton, pose: &mut Pose, leg: &Leg, target: Vec3) {
     rotations[leg.foot] = ((swing * flex * above_foot).inverse() * turned[leg.foot]).normalize();
 }
 
+/// How far the hip has to come down for a leg of that `length` to bring the ankle from `foot` to
+/// `target`, m. None of what is farther away than a leg is long from the point below the hip.
+pub fn lack(hip: Vec3, foot: Vec3, target: Vec3, length: f32) -> Option<f32> {
+    let reach = (SOFT * length).max(foot.distance(hip));
+    let away = (target.x - hip.x).hypot(target.z - hip.z);
+    let height = (reach * reach - away * away).max(0.0).sqrt();
+    (away < reach).then(|| (hip.y - target.y - height).max(0.0))
+}
+
 /// The hip-to-ankle distance to take: what is wanted, if it is no farther than now or well within
 /// reach.
 fn stretch(wanted: f32, now: f32, long: f32, short: f32) -> f32 {
