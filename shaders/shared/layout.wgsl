@@ -6,7 +6,8 @@ const FEATURE = 27u;     // c then t
 const QUADS = 7u;        // vec4s of a padded feature row
 const GOAL = 17u;        // c, then the target in the character frame: what every task observes
 const CELLS = 16u;       // an obstacle map is CELLS x CELLS cells
-const MAPS = 2u;         // now, and at the previous step
+const MAPS = 2u;         // now, and before
+const ROW = 4u;          // words of a row of a map, four cells each
 const GOAL_SCALE = 0.2;  // the target in the observation: metres times this
 
 // real[field * envs + env]

@@ -5,6 +5,13 @@ fn inside(point: vec2f, centre: vec2f, half: vec2f) -> bool {
     return all(abs(point - centre) <= half);
 }
 
+// How far a point lies inside, m: along the axis on which it is nearest to the boundary. Less than
+// nothing outside.
+fn depth(point: vec2f, centre: vec2f, half: vec2f) -> f32 {
+    let within = half - abs(point - centre);
+    return min(within.x, within.y);
+}
+
 // Centre and velocity after `time`, however many walls are met: the path between walls at -side
 // and side is a triangle wave of period 4 side.
 struct Bounced {

@@ -7,7 +7,7 @@
 // whole        [WHOLES][envs]
 // ended        [.. + envs]           read from `offset` on; only rows that ended in one of the ways
 //                                    of `only` (bits, 1 << end) are written
-// maps         [envs][MAPS][CELLS]   see sense
+// maps         [envs][MAPS][CELLS][ROW]   see sense; a full byte is 1
 // observation  [.. + envs][width]    written from `to` on; width is GOAL + rows * CELLS * MAPS with
 //                                    maps, else GOAL
 
@@ -40,12 +40,12 @@ fn observe(@builtin(global_invocation_id) id: vec3u) {
     if ((params.only >> ended[params.offset + env] & 1u) == 0u) { return; }
     let out = (params.to + env) * params.width;
     if (params.width > GOAL) {
-        let now = maps[env * MAPS * CELLS + row];
-        let previous = maps[(env * MAPS + 1u) * CELLS + row];
-        for (var column = 0u; column < CELLS; column++) {
-            let cell = out + GOAL + (row * CELLS + column) * MAPS;
-            observation[cell] = f32(now >> column & 1u);
-            observation[cell + 1u] = f32(previous >> column & 1u);
+        for (var map = 0u; map < MAPS; map++) {
+            let first = ((env * MAPS + map) * CELLS + row) * ROW;
+            for (var column = 0u; column < CELLS; column++) {
+                let byte = maps[first + column / 4u] >> (column % 4u * 8u) & 255u;
+                observation[out + GOAL + (row * CELLS + column) * MAPS + map] = f32(byte) / 255.0;
+            }
         }
     }
     if (row > 0u) { return; }

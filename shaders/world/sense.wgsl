@@ -1,11 +1,15 @@
-// The two obstacle maps: 16 x 16 cell centres over 6 x 6 m in the character frame, one bit each, set
-// if inside an obstacle. The map of now becomes the previous one, but in a new episode both are
-// alike. Paper: section 4, figure 2. One invocation a row of an environment's map.
+// The two obstacle maps: 16 x 16 cell centres over 6 x 6 m in the character frame. A cell is 1 in an
+// obstacle and 0 outside; with `edge` it rises from 0 to 1 over that width across an obstacle's edge,
+// so that it tells where in the cell the edge lies. The other map is the one of the previous step as
+// it was seen then (in a new episode that of now) or, with `back`, what was there so long ago, seen
+// from where the character is now. Paper: section 4, figure 2, where both are 0. One invocation a row
+// of an environment's maps.
 //
 // boxes  [envs][BOX][count]
+// drift  [envs][DRIFT][count]
 // real   [REALS][envs]
 // whole  [WHOLES][envs]
-// maps   [envs][MAPS][CELLS]   bits of a row from right to left; rows from behind to ahead
+// maps   [envs][MAPS][CELLS][ROW]   a byte a cell, from right to left; rows from behind to ahead
 
 #import layout
 #import math
@@ -16,19 +20,31 @@ struct Params {
     count: u32,
     // 1: only the episodes that have just begun; 0: only the others.
     begun: u32,
+    square: f32,
+    // m
+    edge: f32,
+    // s
+    back: f32,
 }
 
 @group(0) @binding(0) var<storage, read> boxes: array<f32>;
-@group(0) @binding(1) var<storage, read> real: array<f32>;
-@group(0) @binding(2) var<storage, read> whole: array<u32>;
-@group(0) @binding(3) var<storage, read_write> maps: array<u32>;
-@group(0) @binding(4) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> drift: array<f32>;
+@group(0) @binding(2) var<storage, read> real: array<f32>;
+@group(0) @binding(3) var<storage, read> whole: array<u32>;
+@group(0) @binding(4) var<storage, read_write> maps: array<u32>;
+@group(0) @binding(5) var<uniform> params: Params;
 
 const CELL = 0.375; // m
 
 // A cell's centre along one axis of the character frame, m. Exact in floating point.
 fn centre(cell: u32) -> f32 {
     return (f32(cell) - 7.5) * CELL;
+}
+
+// A cell's byte, `depth` metres inside an obstacle.
+fn shade(depth: f32) -> u32 {
+    if (params.edge == 0.0) { return select(0u, 255u, depth >= 0.0); }
+    return u32(clamp(0.5 + depth / params.edge, 0.0, 1.0) * 255.0 + 0.5);
 }
 
 @compute @workgroup_size(64)
@@ -43,19 +59,39 @@ fn sense(@builtin(global_invocation_id) id: vec3u) {
     let at = vec2f(real[X * envs + env], real[Z * envs + env]);
     let heading = vec2f(real[HEADING_X * envs + env], real[HEADING_Z * envs + env]);
     var points: array<vec2f, 16>;
+    var depths: array<vec2f, 16>;
     for (var column = 0u; column < CELLS; column++) {
         points[column] = at + to_world(vec2f(centre(column), centre(row)), heading);
+        depths[column] = vec2f(-1e30);
     }
-    var bits = 0u;
     for (var slot = 0u; slot < count; slot++) {
         let i = env * BOX * count + slot;
         let place = vec2f(boxes[i], boxes[i + count]);
         let half = vec2f(boxes[i + HALF_X * count], boxes[i + HALF_Z * count]);
+        var before = place;
+        if (params.back > 0.0) {
+            let j = env * DRIFT * count + slot;
+            before = vec2f(
+                bounce(place.x, -drift[j], params.back, params.square).place,
+                bounce(place.y, -drift[j + count], params.back, params.square).place,
+            );
+        }
         for (var column = 0u; column < CELLS; column++) {
-            bits |= u32(inside(points[column], place, half)) << column;
+            let point = points[column];
+            let deep = vec2f(depth(point, place, half), depth(point, before, half));
+            depths[column] = max(depths[column], deep);
         }
     }
-    let now = env * MAPS * CELLS + row;
-    maps[now + CELLS] = select(maps[now], bits, begun);
-    maps[now] = bits;
+    let now = (env * MAPS * CELLS + row) * ROW;
+    let other = now + CELLS * ROW;
+    for (var word = 0u; word < ROW; word++) {
+        var bytes = vec2u(0u);
+        for (var i = 0u; i < 4u; i++) {
+            let deep = depths[4u * word + i];
+            bytes |= vec2u(shade(deep.x), shade(deep.y)) << vec2u(8u * i);
+        }
+        let seen = select(maps[now + word], bytes.x, begun);
+        maps[other + word] = select(seen, bytes.y, params.back > 0.0);
+        maps[now + word] = bytes.x;
+    }
 }

@@ -3,7 +3,7 @@
 use super::clock::{TOO_LONG_S, Work, seconds};
 use super::{Bench, ENVS, Item, Record};
 use crate::gpu::{Buffer, Device};
-use crate::kernels::layout::{AXES, CELLS, MAPS, boxes, real, whole};
+use crate::kernels::layout::{AXES, MAP_WORDS, boxes, real, whole};
 use crate::kernels::{hits, sense};
 use crate::motion::features::TRAJECTORY;
 use crate::world::{self, LEVELS, Obstacles, Plane, Setup, Snapshot, Task};
@@ -56,7 +56,7 @@ impl Batch<'_> {
 
     /// Bytes of the worlds' state and of what they show.
     fn bytes(&self) -> usize {
-        let obstacles = self.task.obstacles() * (boxes::FIELDS + AXES) + MAPS * CELLS;
+        let obstacles = self.task.obstacles() * (boxes::FIELDS + AXES) + MAP_WORDS;
         let numbers = real::FIELDS + whole::FIELDS + 2 * self.task.width();
         4 * self.envs
             * (numbers
@@ -114,8 +114,8 @@ impl Batch<'_> {
             ..
         } = *self.bench;
         let count = self.task.obstacles();
-        let read = 4.0 * (boxes::FIELDS * count) as f64;
-        let maps = 4.0 * (2 * MAPS * CELLS) as f64;
+        let read = 4.0 * ((boxes::FIELDS + AXES) * count) as f64;
+        let maps = 4.0 * MAP_WORDS as f64;
         let asked = 4.0 * TRAJECTORY as f64;
         for (stage, bytes) in [("rasterise", read + maps), ("hits", read + asked)] {
             if !plan.wants(stage) {
@@ -153,12 +153,11 @@ struct Kernels<'a> {
 
 impl Kernels<'_> {
     fn sense(&self) -> sense::Params {
-        sense::Params {
-            envs: self.batch.envs as u32,
-            count: self.batch.task.obstacles() as u32,
-            // All worlds of the snapshot stand at the start of an episode.
-            begun: 1,
-        }
+        // All worlds of the snapshot stand at the start of an episode.
+        self.batch
+            .setup()
+            .rules(self.batch.bench.database)
+            .sense(true)
     }
 
     fn hits(&self) -> hits::Params {
@@ -183,6 +182,7 @@ impl Kernels<'_> {
                 ),
                 _ => sense::twin(
                     &state.boxes,
+                    &state.drift,
                     &state.real,
                     &state.whole,
                     &mut state.maps,
@@ -200,6 +200,7 @@ impl Kernels<'_> {
         };
         let state = &self.snapshot;
         let boxes = Buffer::from_slice(gpu, &state.boxes);
+        let drift = Buffer::from_slice(gpu, &state.drift);
         let real = Buffer::from_slice(gpu, &state.real);
         let whole = Buffer::from_slice(gpu, &state.whole);
         let maps = Buffer::from_slice(gpu, &state.maps);
@@ -210,7 +211,7 @@ impl Kernels<'_> {
                 "hits" => {
                     hits::launch(gpu, &action, &normal, &boxes, &real, &whole, &self.hits());
                 }
-                _ => sense::launch(gpu, &boxes, &real, &whole, &maps, &self.sense()),
+                _ => sense::launch(gpu, &boxes, &drift, &real, &whole, &maps, &self.sense()),
             }
             Ok(())
         })

@@ -11,8 +11,14 @@ pub const GOAL: usize = POSE + 2;
 pub const CELLS: usize = 16;
 /// Side of a cell, m.
 pub const CELL: f32 = 0.375;
-/// Maps a character sees: now, and at the previous step.
+/// Maps a character sees: now, and before.
 pub const MAPS: usize = 2;
+/// Words of a row of a map: four cells each, a byte a cell, the first in the lowest.
+pub const ROW: usize = CELLS / 4;
+/// Words of an environment's maps.
+pub const MAP_WORDS: usize = MAPS * CELLS * ROW;
+/// A cell that lies in an obstacle.
+pub const FULL: u8 = u8::MAX;
 /// Numbers of an observation's maps, `[row][column][map]`: rows from behind to ahead, columns from
 /// right to left in the character frame.
 pub const SENSED: usize = CELLS * CELLS * MAPS;
@@ -91,6 +97,7 @@ const _: () = {
     assert!(wgsl::FEATURE as usize == FEATURE && wgsl::QUADS as usize * 4 == PADDED);
     assert!(wgsl::GOAL as usize == GOAL && wgsl::PLAYED as usize == PLAYED);
     assert!(wgsl::CELLS as usize == CELLS && wgsl::MAPS as usize == MAPS);
+    assert!(wgsl::ROW as usize == ROW);
     assert!(wgsl::X as usize == real::X && wgsl::Z as usize == real::Z);
     assert!(
         wgsl::HEADING_X as usize == real::HEADING_X && wgsl::HEADING_Z as usize == real::HEADING_Z

@@ -1,6 +1,6 @@
 //! What the policy sees. Shader: `shaders/world/observe.wgsl`.
 
-use super::layout::{CELLS, GOAL, GOAL_SCALE, MAPS, real, whole};
+use super::layout::{CELLS, FULL, GOAL, GOAL_SCALE, MAP_WORDS, MAPS, ROW, real, whole};
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::database::PADDED;
@@ -72,10 +72,13 @@ pub fn twin(
         row[POSE] = goal[0] * GOAL_SCALE;
         row[POSE + 1] = goal[1] * GOAL_SCALE;
         if row.len() > GOAL {
-            let (now, previous) = maps[env * MAPS * CELLS..][..MAPS * CELLS].split_at(CELLS);
-            for (cell, seen) in row[GOAL..].chunks_exact_mut(MAPS).enumerate() {
-                let bit = |map: &[u32]| (map[cell / CELLS] >> (cell % CELLS) & 1) as f32;
-                (seen[0], seen[1]) = (bit(now), bit(previous));
+            let (now, other) = maps[env * MAP_WORDS..][..MAP_WORDS].split_at(CELLS * ROW);
+            for (i, seen) in row[GOAL..].chunks_exact_mut(4 * MAPS).enumerate() {
+                let (now, other) = (now[i].to_le_bytes(), other[i].to_le_bytes());
+                for (cell, seen) in seen.chunks_exact_mut(MAPS).enumerate() {
+                    let share = |byte: u8| f32::from(byte) / f32::from(FULL);
+                    (seen[0], seen[1]) = (share(now[cell]), share(other[cell]));
+                }
             }
         }
     }

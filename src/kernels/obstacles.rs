@@ -7,6 +7,14 @@ pub fn inside(point: [f32; 2], centre: [f32; 2], half: [f32; 2]) -> bool {
     ((point[0] - centre[0]).abs() <= half[0]) & ((point[1] - centre[1]).abs() <= half[1])
 }
 
+/// How far a point lies inside, m: along the axis on which it is nearest to the boundary. Less than
+/// nothing outside.
+#[inline(always)]
+pub fn depth(point: [f32; 2], centre: [f32; 2], half: [f32; 2]) -> f32 {
+    let [x, z] = [0, 1].map(|axis: usize| half[axis] - (point[axis] - centre[axis]).abs());
+    if x < z { x } else { z }
+}
+
 /// Place and velocity after `time`, however many walls are met: the path between walls at `-side`
 /// and `side` is a triangle wave of period `4 * side`.
 #[inline(always)]

@@ -14,11 +14,11 @@ mod maps;
 /// Cells along each side of a map.
 pub const CELLS: usize = 16;
 
-/// What a policy sees of the obstacles within 6 m by 6 m: `map[row][column]` says whether
-/// that cell is blocked. Rows count forwards from the farthest behind the character (z from
+/// What a policy sees of the obstacles within 6 m by 6 m: `map[row][column]` is 0 if that cell
+/// is free, 255 if it is blocked. Rows count forwards from the farthest behind the character (z from
 /// −3 m to 3 m in its frame), columns from its right to its left (x from −3 m to 3 m); the
 /// character stands in the middle.
-pub type Map = [[bool; CELLS]; CELLS];
+pub type Map = [[u8; CELLS]; CELLS];
 
 /// An axis-aligned box that moves: world x and z, in metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,7 +1,7 @@
 //! A run at one moment, complete: it goes on from here as if it had never stopped.
 
 use super::config::Config;
-use crate::kernels::layout::{AXES, CELLS, MAPS, boxes, real, whole};
+use crate::kernels::layout::{AXES, MAP_WORDS, boxes, real, whole};
 use crate::ppo::Ppo;
 use crate::ppo::adam::Adam;
 use crate::ppo::network::{Network, Shape};
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 const FORMAT: Format = Format {
     kind: "checkpt",
-    version: 2,
+    version: 3,
 };
 
 /// What a policy was trained for, and how far the run had come.
@@ -192,7 +192,7 @@ impl Checkpoint {
             && header.world.whole.len() == envs * whole::FIELDS
             && header.world.boxes.len() == envs * boxes::FIELDS * header.task.obstacles()
             && header.world.drift.len() == envs * AXES * header.task.obstacles()
-            && header.world.maps.len() == envs * MAPS * CELLS;
+            && header.world.maps.len() == envs * MAP_WORDS;
         if !fits {
             return Err(damaged("its arrays do not fit together"));
         }

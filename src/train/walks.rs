@@ -2,7 +2,8 @@
 
 use super::controller::Controller;
 use super::evaluate::{SECONDS_A_STEP, advance, episodes};
-use crate::kernels::layout::{CELLS, MAPS, boxes, end, real};
+use crate::kernels::layout::{MAPS, boxes, end, real};
+use crate::kernels::sense::cell;
 use crate::motion::database::Database;
 use crate::motion::frame::to_local;
 use crate::report::obstacle_walks::{End, Episode, Map, Obstacle};
@@ -126,11 +127,9 @@ fn heading(world: &CpuWorld) -> [f32; 2] {
     [real::HEADING_X, real::HEADING_Z].map(|field| world.field(field, 0))
 }
 
-/// The maps of the first world, now and previous.
+/// The maps of the first world.
 fn maps(world: &CpuWorld) -> [Map; MAPS] {
-    let cell =
-        |map: usize, row: usize, column: usize| world.maps[map * CELLS + row] >> column & 1 == 1;
     std::array::from_fn(|map| {
-        std::array::from_fn(|row| std::array::from_fn(|column| cell(map, row, column)))
+        std::array::from_fn(|row| std::array::from_fn(|column| cell(&world.maps, map, row, column)))
     })
 }

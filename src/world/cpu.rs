@@ -3,7 +3,7 @@
 use super::rules::Rules;
 use super::watched::{State, Watched};
 use super::{Setup, Snapshot, Values, World};
-use crate::kernels::layout::{AXES, CELLS, MAPS, boxes, real, whole};
+use crate::kernels::layout::{AXES, MAP_WORDS, boxes, real, whole};
 use crate::kernels::obstacles::inside;
 use crate::kernels::{
     act, collide, gae, hits, observe, query, reset, scatter, sense, step, tally, wander,
@@ -30,7 +30,7 @@ pub struct CpuWorld {
     pub boxes: Vec<f32>,
     /// `[envs][AXES][count]`
     pub drift: Vec<f32>,
-    /// `[envs][MAPS][CELLS]`
+    /// `[envs][MAP_WORDS]`
     pub maps: Vec<u32>,
     /// `[envs]`, what the last step asked.
     pub queries: Vec<[f32; PADDED]>,
@@ -60,7 +60,7 @@ impl CpuWorld {
             whole: vec![0; whole::FIELDS * envs],
             boxes: vec![0.0; envs * boxes::FIELDS * count],
             drift: vec![0.0; envs * AXES * count],
-            maps: vec![0; envs * MAPS * CELLS],
+            maps: vec![0; envs * MAP_WORDS],
             queries: vec![[0.0; PADDED]; envs],
             matched: vec![0; envs],
             reward: vec![0.0; setup.horizon * envs],
@@ -99,6 +99,7 @@ impl CpuWorld {
         let params = self.rules.sense(begun);
         sense::twin(
             &self.boxes,
+            &self.drift,
             &self.real,
             &self.whole,
             &mut self.maps,
@@ -202,7 +203,7 @@ impl CpuWorld {
         self.whole = gather(&self.whole, old, 1, envs);
         self.boxes = gather(&self.boxes, old, boxes::FIELDS * count, envs);
         self.drift = gather(&self.drift, old, AXES * count, envs);
-        self.maps = gather(&self.maps, old, MAPS * CELLS, envs);
+        self.maps = gather(&self.maps, old, MAP_WORDS, envs);
         self.reward = gather(&self.reward, old, 1, envs);
         self.ended = gather(&self.ended, old, 1, envs);
         self.queries.resize(envs.len(), [0.0; PADDED]);

@@ -7,7 +7,7 @@ use super::watched::{Buffers, Watched};
 use super::{Setup, Snapshot, Values, World};
 use crate::gpu::tensor::{from_buffer, to_buffer};
 use crate::gpu::{Buffer, Gpu};
-use crate::kernels::layout::{AXES, CELLS, MAPS, boxes, real, whole};
+use crate::kernels::layout::{AXES, MAP_WORDS, boxes, real, whole};
 use crate::kernels::{
     act, collide, gae, hits, observe, query, reset, scatter, sense, step, tally, wander,
 };
@@ -34,7 +34,7 @@ pub struct GpuWorld {
     boxes: Buffer<f32>,
     /// `[envs][AXES][count]`
     drift: Buffer<f32>,
-    /// `[envs][MAPS][CELLS]`
+    /// `[envs][MAP_WORDS]`
     maps: Buffer<u32>,
     queries: Buffer<f32>,
     search: Search,
@@ -62,7 +62,7 @@ impl GpuWorld {
             whole: Buffer::zeroed(gpu, whole::FIELDS * envs),
             boxes: Buffer::zeroed(gpu, envs * boxes::FIELDS * count),
             drift: Buffer::zeroed(gpu, envs * AXES * count),
-            maps: Buffer::zeroed(gpu, envs * MAPS * CELLS),
+            maps: Buffer::zeroed(gpu, envs * MAP_WORDS),
             queries: Buffer::zeroed(gpu, envs * PADDED),
             search: Search::new(gpu, database, envs),
             reward: Buffer::zeroed(gpu, setup.horizon * envs),
@@ -100,6 +100,7 @@ impl GpuWorld {
         sense::launch(
             &self.gpu,
             &self.boxes,
+            &self.drift,
             &self.real,
             &self.whole,
             &self.maps,

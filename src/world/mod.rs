@@ -64,7 +64,7 @@ pub struct Setup {
 }
 
 impl Setup {
-    fn rules(&self, database: &Database) -> Rules {
+    pub fn rules(&self, database: &Database) -> Rules {
         Rules {
             task: self.task,
             envs: self.envs,
@@ -95,7 +95,7 @@ pub struct Snapshot {
     /// `[envs][AXES][count]`
     #[serde(skip)]
     pub drift: Vec<f32>,
-    /// `[envs][MAPS][CELLS]`
+    /// `[envs][MAP_WORDS]`
     #[serde(skip)]
     pub maps: Vec<u32>,
 }

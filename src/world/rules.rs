@@ -120,10 +120,17 @@ impl Rules {
 
     /// `begun`: only the episodes that have just begun, or only the others.
     pub fn sense(&self, begun: bool) -> sense::Params {
+        let (edge, back) = match self.task {
+            Task::Plane(_) => (0.0, 0.0),
+            Task::Obstacles(task) => (task.edge, task.look_back),
+        };
         sense::Params {
             envs: self.envs as u32,
             count: self.task.obstacles() as u32,
             begun: begun.into(),
+            square: self.square(),
+            edge,
+            back,
         }
     }
 

@@ -56,6 +56,12 @@ pub struct Obstacles {
     /// Half the side of the square of targets around the start, on the first and the last level, m.
     pub half_side_first: f32,
     pub half_side_last: f32,
+    /// Width over which a cell of the maps rises from 0 to 1 across an obstacle's edge, m. At 0 it is 1
+    /// if its centre lies in an obstacle, and else 0 (the paper's binary sensors).
+    pub edge: f32,
+    /// The second map shows where obstacles were so long ago, from where the character is now, s. At 0
+    /// it is the map of the previous step, as it was seen then (the paper's).
+    pub look_back: f32,
     /// Targets lie in no obstacle when they are drawn.
     pub target_clear: bool,
     /// The target is reached within this distance, and never drawn within it, m.
@@ -125,6 +131,8 @@ impl Obstacles {
         motion: Motion::Same,
         half_side_first: 2.5,
         half_side_last: 5.0,
+        edge: 0.0,
+        look_back: 0.0,
         target_clear: false,
         reach: 0.5,
         max_steps: 1000,
@@ -150,6 +158,8 @@ impl Obstacles {
     /// What trains best.
     pub const FAST: Obstacles = Obstacles {
         target_clear: true,
+        edge: 0.375,
+        look_back: 0.2,
         reward: Reward::Progress,
         hit_reward: 0.1,
         hit_shift: true,

@@ -17,8 +17,8 @@ fn episode(boxes: usize, steps: usize, end: End) -> Episode {
         }
     };
     let time = |step: usize| 0.2 * step as f32;
-    let mut maps = [[[false; CELLS]; CELLS]; 2];
-    maps[0][12][9] = true;
+    let mut maps = [[[0; CELLS]; CELLS]; 2];
+    maps[0][12][9] = 255;
     Episode {
         title: "level 9".to_owned(),
         obstacles: (0..boxes).map(obstacle).collect(),
@@ -66,9 +66,9 @@ fn the_view_from_above_and_the_maps_are_not_mirrored() {
         ..Episode::default()
     };
     // Ahead and to the left, which is up and on the left.
-    episode.maps[0][CELLS - 1][CELLS - 1] = true;
+    episode.maps[0][CELLS - 1][CELLS - 1] = 255;
     // A step before: behind and to the right.
-    episode.maps[1][0][0] = true;
+    episode.maps[1][0][0] = 255;
     let picture = drawn(|path| obstacle_walks::draw(path, &[episode], 0.2));
     let metre = 560.0 / 23.0;
     let at = |x: f64, z: f64| {

@@ -3,7 +3,7 @@
 
 use crate::inputs::Draw;
 use crate::paper::DATABASE;
-use footwork::kernels::layout::{AXES, CELLS, MAPS, boxes, real, whole};
+use footwork::kernels::layout::{AXES, MAP_WORDS, boxes, real, whole};
 use footwork::motion::features::TRAJECTORY;
 use footwork::world::cpu::CpuWorld;
 use footwork::world::{LEVELS, Obstacles, Plane, Setup, Task};
@@ -42,7 +42,7 @@ fn same(all: &CpuWorld, some: &CpuWorld, envs: &[usize]) {
     assert_eq!(some.whole, rows(&all.whole, 1, envs));
     assert_eq!(some.boxes, rows(&all.boxes, boxes::FIELDS * count, envs));
     assert_eq!(some.drift, rows(&all.drift, AXES * count, envs));
-    assert_eq!(some.maps, rows(&all.maps, MAPS * CELLS, envs));
+    assert_eq!(some.maps, rows(&all.maps, MAP_WORDS, envs));
     assert_eq!(some.ended, rows(&all.ended, 1, envs));
     let width = all.rules.task.width();
     assert_eq!(some.observation(), rows(&all.observation(), width, envs));

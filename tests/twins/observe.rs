@@ -6,8 +6,9 @@ use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, gpu, same, within_terms};
 use bytemuck::cast_slice;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::layout::{CELLS, GOAL, GOAL_SCALE, MAPS, SENSED, end, real};
+use footwork::kernels::layout::{CELLS, GOAL, GOAL_SCALE, MAP_WORDS, MAPS, SENSED, end, real};
 use footwork::kernels::observe;
+use footwork::kernels::sense::cell;
 use footwork::motion::database::PADDED;
 use footwork::motion::features::POSE;
 
@@ -47,8 +48,8 @@ impl Case {
     /// The same with maps, written from row `to` on.
     fn mapped(mut self, to: usize) -> Self {
         let mut draw = Draw::new(5);
-        let rows = self.envs() * MAPS * CELLS;
-        self.maps = (0..rows).map(|_| draw.bits()[0] & 0xffff).collect();
+        let words = self.envs() * MAP_WORDS;
+        self.maps = (0..words).map(|_| draw.bits()[0]).collect();
         self.params.rows = CELLS as u32;
         self.params.width = (GOAL + SENSED) as u32;
         self.params.to = to as u32;
@@ -195,11 +196,11 @@ fn maps_stand_after_the_goal_with_channels_last() {
                     assert!(seen.iter().all(|&o| o == POISON), "row {row}");
                     continue;
                 };
-                let maps = &case.maps[env * MAPS * CELLS..][..MAPS * CELLS];
+                let maps = &case.maps[env * MAP_WORDS..][..MAP_WORDS];
                 for (at, &seen) in seen[GOAL..].iter().enumerate() {
-                    let (cell, map) = (at / MAPS, at % MAPS);
-                    let bits = maps[map * CELLS + cell / CELLS];
-                    assert_eq!(seen, (bits >> (cell % CELLS) & 1) as f32);
+                    let (place, map) = (at / MAPS, at % MAPS);
+                    let byte = cell(maps, map, place / CELLS, place % CELLS);
+                    assert_eq!(seen, f32::from(byte) / 255.0);
                 }
             }
         }

@@ -1,15 +1,15 @@
 //! Oracle: cell centres and boxes in f64, see `geometry`; twin and shader are both judged by it.
-//! Bar: none where no arithmetic rounds; else 1e-5 m from an edge.
+//! Bar: none where no arithmetic rounds but that of a cell to its byte; else 1e-5 m.
 
 use crate::checked;
-use crate::geometry::{depth, right};
-use crate::ground::{COUNTS, Ground};
+use crate::geometry::{Obstacle, depth, right};
+use crate::ground::{COUNTS, Ground, SQUARE};
 use crate::inputs::{Draw, SEEDS, gpu};
 use bytemuck::cast_slice;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::layout::{CELLS, MAPS, boxes, real, whole};
-use footwork::kernels::sense;
+use footwork::kernels::layout::{CELLS, FULL, MAP_WORDS, boxes, real, whole};
+use footwork::kernels::sense::{self, cell};
 
 /// Batch sizes around the workgroup's 64 rows of a map.
 const SIZES: [usize; 6] = [1, 3, 4, 5, 64, 65];
@@ -21,17 +21,30 @@ struct Case {
     params: sense::Params,
 }
 
+/// What maps are like: `edge` (m) and `back` (s). In exact worlds obstacles move by whole grains in a
+/// 32nd of a second.
+const KINDS: [[f32; 2]; 5] = [
+    [0.0, 0.0],
+    [0.375, 0.0],
+    [0.0, 0.03125],
+    [0.75, 0.03125],
+    [3.0, 0.5],
+];
+
 impl Case {
-    fn new(ground: Ground, begun: bool) -> Self {
+    fn new(ground: Ground, begun: bool, [edge, back]: [f32; 2]) -> Self {
         let mut draw = Draw::new(1);
         let mut case = Case {
-            maps: (0..ground.envs * MAPS * CELLS + 5)
+            maps: (0..ground.envs * MAP_WORDS + 5)
                 .map(|_| draw.bits()[0])
                 .collect(),
             params: sense::Params {
                 envs: ground.envs as u32,
                 count: ground.count as u32,
                 begun: begun.into(),
+                square: SQUARE,
+                edge,
+                back,
             },
             ground,
         };
@@ -46,6 +59,7 @@ impl Case {
         let ground = &self.ground;
         sense::twin(
             ground.own_boxes(),
+            ground.own_drift(),
             &ground.real,
             &ground.whole,
             &mut maps,
@@ -60,6 +74,7 @@ impl Case {
         sense::launch(
             &gpu,
             &Buffer::from_slice(&gpu, &self.ground.boxes),
+            &Buffer::from_slice(&gpu, &self.ground.drift),
             &Buffer::from_slice(&gpu, &self.ground.real),
             &Buffer::from_slice(&gpu, &self.ground.whole),
             &maps,
@@ -69,14 +84,15 @@ impl Case {
     }
 
     fn checked(&self) -> Vec<u32> {
-        let buffers: [&[u8]; 4] = [
+        let buffers: [&[u8]; 5] = [
             cast_slice(&self.ground.boxes),
+            cast_slice(&self.ground.drift),
             cast_slice(&self.ground.real),
             cast_slice(&self.ground.whole),
             cast_slice(&self.maps),
         ];
         let groups = groups(&shader::SENSE, self.ground.envs * CELLS);
-        checked::run(&shader::SENSE, groups, &buffers, &self.params).of(3)
+        checked::run(&shader::SENSE, groups, &buffers, &self.params).of(4)
     }
 
     fn agrees(&self) -> Vec<u32> {
@@ -93,7 +109,7 @@ impl Case {
     }
 
     fn judge(&self, form: &str, got: &[u32]) {
-        let (before, after) = (self.maps.chunks(MAPS * CELLS), got.chunks(MAPS * CELLS));
+        let (before, after) = (self.maps.chunks(MAP_WORDS), got.chunks(MAP_WORDS));
         for (env, (before, after)) in before.zip(after).enumerate() {
             let written =
                 env < self.ground.envs && self.ground.begun(env) == (self.params.begun == 1);
@@ -101,27 +117,51 @@ impl Case {
                 assert_eq!(before, after, "{form}: environment {env}");
                 continue;
             }
-            let (now, previous) = after.split_at(CELLS);
+            let obstacles = self.ground.obstacles(env);
+            self.judge_map(form, env, (after, 0), &obstacles);
+            if self.params.back > 0.0 {
+                let back = |obstacle: Obstacle| Obstacle {
+                    velocity: obstacle.velocity.map(|v| -v),
+                    ..obstacle
+                };
+                let (time, side) = (f64::from(self.params.back), f64::from(SQUARE));
+                let moved = obstacles.into_iter().map(|o| back(o).moved(time, side));
+                self.judge_map(form, env, (after, 1), &moved.collect::<Vec<_>>());
+                continue;
+            }
+            let half = MAP_WORDS / 2;
             let shown = if self.params.begun == 1 {
-                now
+                after
             } else {
-                &before[..CELLS]
+                before
             };
-            assert_eq!(previous, shown, "{form}: environment {env}");
-            self.judge_map(form, env, now);
+            assert_eq!(after[half..], shown[..half], "{form}: environment {env}");
         }
     }
 
-    fn judge_map(&self, form: &str, env: usize, map: &[u32]) {
-        let (stance, obstacles) = (self.ground.stance(env), self.ground.obstacles(env));
-        for (row, bits) in map.iter().enumerate() {
-            assert_eq!(bits >> CELLS, 0, "{form}: more than a row of cells");
+    fn judge_map(
+        &self,
+        form: &str,
+        env: usize,
+        (maps, map): (&[u32], usize),
+        obstacles: &[Obstacle],
+    ) {
+        let (stance, edge) = (self.ground.stance(env), f64::from(self.params.edge));
+        for row in 0..CELLS {
             for column in 0..CELLS {
-                let depth = depth(&obstacles, stance.cell(row, column));
-                let found = bits >> column & 1 == 1;
+                let depth = depth(obstacles, stance.cell(row, column));
+                let found = cell(maps, map, row, column);
+                let bar = self.ground.bar();
+                let well = if edge == 0.0 {
+                    (found == 0 || found == FULL) && right(found == FULL, depth, bar)
+                } else {
+                    let share = (0.5 + depth / edge).clamp(0.0, 1.0);
+                    let off = (f64::from(found) / 255.0 - share).abs();
+                    off <= 0.5001 / 255.0 + bar / edge
+                };
                 assert!(
-                    right(found, depth, self.ground.bar()),
-                    "{form}: environment {env}, cell {row} {column}: {depth:e} m"
+                    well,
+                    "{form}: environment {env}, map {map}, cell {row} {column}: {found}, {depth:e} m"
                 );
             }
         }
@@ -134,8 +174,10 @@ fn agrees_with_geometry_in_all_worlds() {
         for count in COUNTS {
             for envs in SIZES {
                 let ground = || Ground::new(envs, count, envs as u32, exact);
-                Case::new(ground(), false).agrees();
-                Case::new(ground(), true).agrees();
+                for kind in KINDS {
+                    Case::new(ground(), false, kind).agrees();
+                    Case::new(ground(), true, kind).agrees();
+                }
             }
         }
     }
@@ -145,7 +187,9 @@ fn agrees_with_geometry_in_all_worlds() {
 fn agrees_for_every_seed() {
     for seed in SEEDS {
         for exact in [true, false] {
-            Case::new(Ground::new(40, 100, seed, exact), false).agrees();
+            for kind in KINDS {
+                Case::new(Ground::new(40, 100, seed, exact), false, kind).agrees();
+            }
         }
     }
 }
@@ -160,13 +204,16 @@ fn alone(centre: [f32; 2], half: [f32; 2], heading: [f32; 2]) -> Case {
     (ground.real[real::HEADING_X], ground.real[real::HEADING_Z]) = (heading[0], heading[1]);
     (ground.boxes[boxes::X], ground.boxes[boxes::Z]) = (centre[0], centre[1]);
     (ground.boxes[boxes::HALF_X], ground.boxes[boxes::HALF_Z]) = (half[0], half[1]);
-    Case::new(ground, true)
+    Case::new(ground, true, [0.0; 2])
 }
 
-/// Bits of the cells that hold something.
+/// Rows that hold something, with a bit for every full cell.
 fn seen(case: &Case) -> Vec<(usize, u32)> {
     let maps = case.agrees();
-    let rows = maps[..CELLS].iter().copied().enumerate();
+    let rows = (0..CELLS).map(|row| {
+        let bit = |column: usize| u32::from(cell(&maps, 0, row, column) == FULL) << column;
+        (row, (0..CELLS).map(bit).sum())
+    });
     rows.filter(|&(_, bits)| bits != 0).collect()
 }
 
@@ -214,6 +261,18 @@ fn a_box_covers_its_edges_and_nothing_beyond() {
 fn the_last_of_ten_thousand_boxes_is_seen() {
     let mut ground = Ground::crowded(3, 10_000);
     ground.whole[whole::AGE * 3..][..3].fill(0);
-    let maps = Case::new(ground, true).agrees();
-    assert_eq!(maps[8], 0xff << 4);
+    assert_eq!(seen(&Case::new(ground, true, [0.0; 2]))[4], (8, 0xff << 4));
+}
+
+#[test]
+fn a_soft_edge_tells_where_in_a_cell_it_lies() {
+    let soft = |half: f32| {
+        let mut case = alone([0.0, 0.1875], [half, 0.1], [0.0, 1.0]);
+        case.params.edge = 0.375;
+        cell(&case.agrees(), 0, 8, 8)
+    };
+    // The cell's centre is 0.1875 m from the box's middle.
+    assert_eq!(soft(0.1875), 128);
+    assert_eq!(soft(0.1875 - 0.2), 0);
+    assert!(soft(0.2) > 128 && soft(0.17) < 128);
 }

@@ -35,9 +35,13 @@ pub fn draw(
 fn draw_map(canvas: &mut Canvas<'_>, map: &Map, (left, top): Pixel) -> Result<(), Error> {
     let (right, bottom) = (left + SIDE, top + SIDE);
     for (row, cells) in map.iter().enumerate() {
-        for (column, _) in cells.iter().enumerate().filter(|&(_, &blocked)| blocked) {
+        for (column, &cell) in cells.iter().enumerate().filter(|&(_, &cell)| cell > 0) {
             let (x, y) = (right - column as f64 * CELL, bottom - row as f64 * CELL);
-            canvas.rectangle((x - CELL, y - CELL), (x, y), chart::tint(OBSTACLE, 0.75))?;
+            canvas.rectangle(
+                (x - CELL, y - CELL),
+                (x, y),
+                chart::tint(OBSTACLE, 0.75 * f64::from(cell) / 255.0),
+            )?;
         }
     }
     for line in 1..CELLS {
