@@ -10,7 +10,7 @@ from stable_baselines3.common.vec_env import VecEnv, VecNormalize
 
 import plane
 from database import PLAYED, POSE, load
-from search import Flat
+from search import PRODUCTS, Flat
 
 
 class Plane:
@@ -130,7 +130,7 @@ def evaluate(model, database, search):
 def main():
     args = plane.options(__doc__).parse_args()
     database = load(args.database)
-    search = Flat(database.rows)
+    search = Flat(database.rows, PRODUCTS)
     worlds = Worlds(database, search, args.seed)
     model = PPO(
         "MlpPolicy",

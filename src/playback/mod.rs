@@ -14,6 +14,7 @@ pub mod player;
 pub mod pose;
 pub mod quality;
 pub mod shown;
+mod spring;
 pub mod stitch;
 pub mod two_joint;
 

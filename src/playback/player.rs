@@ -5,6 +5,7 @@ use super::foot_lock::FootLock;
 use super::leg::{Leg, legs};
 use super::pose::Pose;
 use super::shown::Shown;
+use super::spring::Spring;
 use super::stitch::{Stitch, Stitching};
 use super::two_joint;
 use crate::motion::database::Database;
@@ -13,8 +14,8 @@ use std::sync::Arc;
 
 /// Hips come down for a foot by this much at most, m.
 const LOWEST: f32 = 0.12;
-/// What is left of that a frame after no foot needs it any more.
-const RISE: f32 = 0.85;
+/// How fast they follow what the feet need, a frame.
+const FOLLOW: f32 = 0.5;
 
 /// What all players of one database share.
 #[derive(Debug)]
@@ -66,7 +67,7 @@ pub struct Player {
     stitch: Stitch,
     locks: [FootLock; 2],
     /// By how much the hips are lower than the motion has them, m.
-    lowered: f32,
+    hips: Spring,
 }
 
 impl Player {
@@ -80,7 +81,7 @@ impl Player {
             shown,
             stitch,
             locks: Default::default(),
-            lowered: 0.0,
+            hips: Spring::default(),
         }
     }
 
@@ -120,8 +121,7 @@ impl Player {
                 lack = lack.max(lacks.unwrap_or(0.0).min(LOWEST));
             }
         }
-        self.lowered = lack.max(RISE * self.lowered);
-        pose.root.y -= self.lowered;
+        pose.root.y -= self.hips.follow(lack, FOLLOW);
         for (leg, target) in self.feet.legs.iter().zip(targets) {
             two_joint::reach(skeleton, pose, leg, target);
         }
