@@ -53,8 +53,9 @@ fn pictures(criterion: &mut Criterion) {
         group.bench_function(name, |bencher| bencher.iter(|| studio.draw(&scene, None)));
     }
     for envs in [256, 1024, 4096] {
+        let task = Task::Plane(Plane::default());
         let setup = Setup {
-            task: Task::Plane(Plane::default()),
+            task,
             envs,
             horizon: 1,
             seed: 1,
@@ -62,7 +63,7 @@ fn pictures(criterion: &mut Criterion) {
         };
         let mut world = world::open(&Device::from(gpu.clone()), &database, &setup);
         let watched = world.watch().expect("a device");
-        let crowd = Crowd::new(&studio.renderer, &database, watched, envs);
+        let crowd = Crowd::new(&studio.renderer, &database, watched, &task, envs);
         studio.camera.distance = 8.0 + 0.6 * crowd.side;
         studio.camera.pitch = 0.5;
         let scene = Scene::default();

@@ -1,11 +1,12 @@
 // Every environment's character and its target, drawn from the worlds' own buffers: one instance a
-// bone, and one more a target. The worlds stand in rows, `spacing` apart.
+// bone, and one more a target.
 //
 // real    [REALS][envs]
 // whole   [WHOLES][envs]
 // points  [frames][points]   the bones' ends in the character frame, in shares of REACH
 // bones   [bones]
 
+#import crowd
 #import layout
 #import math
 #import light
@@ -19,15 +20,6 @@ struct Bone {
     radius_a: f32,
     radius_b: f32,
     colour: vec4f,
-}
-
-struct Crowd {
-    envs: u32,
-    bones: u32,
-    points: u32,
-    columns: u32,
-    // m
-    spacing: f32,
 }
 
 @group(2) @binding(0) var<storage, read> real: array<f32>;
@@ -51,20 +43,13 @@ fn field(place: u32, env: u32) -> f32 {
     return real[place * crowd.envs + env];
 }
 
-// Where an environment's origin lies.
-fn origin(env: u32) -> vec2f {
-    let rows = (crowd.envs + crowd.columns - 1u) / crowd.columns;
-    let cell = vec2f(f32(env % crowd.columns), f32(env / crowd.columns));
-    return (cell - 0.5 * (vec2f(f32(crowd.columns), f32(rows)) - 1.0)) * crowd.spacing;
-}
-
 fn end(point: u32, env: u32, radius: f32) -> vec4f {
     let frame = whole[FRAME * crowd.envs + env];
     let packed = points[frame * crowd.points + point];
     let xy = REACH * unpack2x16snorm(packed.x);
     let z = REACH * unpack2x16snorm(packed.y).x;
     let heading = vec2f(field(HEADING_X, env), field(HEADING_Z, env));
-    let ground = origin(env) + vec2f(field(X, env), field(Z, env)) + to_world(vec2f(xy.x, z), heading);
+    let ground = origin(crowd, env) + vec2f(field(X, env), field(Z, env)) + to_world(vec2f(xy.x, z), heading);
     return vec4f(ground.x, xy.y, ground.y, radius);
 }
 
@@ -85,7 +70,7 @@ fn place(
         b = end(bone.b, env, bone.radius_b);
         colour = bone.colour.xyz;
     } else {
-        let ground = origin(env) + vec2f(field(TARGET_X, env), field(TARGET_Z, env));
+        let ground = origin(crowd, env) + vec2f(field(TARGET_X, env), field(TARGET_Z, env));
         a = vec4f(ground.x, 0.0, ground.y, 0.06);
         b = vec4f(ground.x, 0.5, ground.y, 0.12);
     }

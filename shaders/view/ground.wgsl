@@ -1,4 +1,4 @@
-// The ground: a wide square around the camera with a line every metre and a bolder one every five.
+// The ground: a square around the camera that ends behind the haze, with a line every metre and a bolder one every five.
 
 #import light
 
@@ -7,12 +7,13 @@ struct Corner {
     @location(0) at: vec3f,
 }
 
-const WIDE = 400.0; // m
+// Half side in distances of half the haze.
+const WIDE = 3.5;
 
 @vertex
 fn place(@builtin(vertex_index) index: u32) -> Corner {
     let side = vec2f(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
-    let at = vec3f(view.eye.x + WIDE * side.x, 0.0, view.eye.z + WIDE * side.y);
+    let at = vec3f(view.eye.x, 0.0, view.eye.z) + WIDE * view.haze * vec3f(side.x, 0.0, side.y);
     return Corner(view.clip * vec4f(at, 1.0), at);
 }
 

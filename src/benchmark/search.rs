@@ -20,7 +20,7 @@ use anyhow::Result;
 
 const SIZES: [usize; 5] = [4096, 16_384, 65_536, 262_144, 1_048_576];
 /// Queries of a batch; the plain search on the CPU, an oracle, gets fewer.
-const QUERIES: usize = 2048;
+const QUERIES: usize = 8192;
 const FEW: usize = 16;
 const NOISE: f32 = 1.0;
 

@@ -164,6 +164,7 @@ impl Render {
             Output::Folder(path) => {
                 std::fs::create_dir_all(path)
                     .with_context(|| format!("cannot make the folder {}", path.display()))?;
+                film::clear(path)?;
                 for number in (0..count).progress() {
                     film::png(&film::frame(path, number), self.size, &film.picture()?)?;
                     film.skip(between)?;

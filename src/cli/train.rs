@@ -162,9 +162,7 @@ impl Options {
         };
         let summary = match self.watch {
             false => run(None)?,
-            true => watched(&device, &database, config.ppo.envs, |watch| {
-                run(Some(watch))
-            })?,
+            true => watched(&device, &database, &config, |watch| run(Some(watch)))?,
         };
         println!(
             "{} steps in {:.1} s ({:.0} steps/s), stopped by {}: {:.1} % of 1000 episodes{} reach the target, in {:.2} s on average",
@@ -287,7 +285,7 @@ fn introduce(config: &Config, folder: &Folder, database: &Database, device: &Dev
 fn watched(
     device: &Device,
     database: &Arc<Database>,
-    envs: usize,
+    config: &Config,
     train: impl FnOnce(&Watch) -> Result<Summary> + Send,
 ) -> Result<Summary> {
     // Training on the CPU is drawn on what there is to draw on.
@@ -302,7 +300,14 @@ fn watched(
             over.store(true, Ordering::Relaxed);
             summary
         });
-        let shown = window::watch(&gpu, database.clone(), envs, watch.clone(), over.clone());
+        let shown = window::watch(
+            &gpu,
+            database.clone(),
+            config.task,
+            config.ppo.envs,
+            watch.clone(),
+            over.clone(),
+        );
         if let Err(error) = shown {
             eprintln!("note: the training goes on unwatched: {error:#}");
         }

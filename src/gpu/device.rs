@@ -27,11 +27,16 @@ pub enum Choice {
 /// No adapter of the asked-for kind.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "no {wanted} found: install a Vulkan, Metal or DX12 driver (Mesa's `mesa-vulkan-drivers` brings lavapipe), or use `--device cpu`"
+    "no {wanted} found: install a Vulkan, Metal or DX12 driver (Mesa's `mesa-vulkan-drivers` brings lavapipe){instead}"
 )]
 pub struct NoAdapter {
     wanted: &'static str,
+    /// What else there is to do.
+    instead: &'static str,
 }
+
+/// The networks and worlds need none.
+const INSTEAD: &str = ", or use `--device cpu`";
 
 /// An opened device.
 #[derive(Clone)]
@@ -140,7 +145,10 @@ impl Gpu {
         ];
         let open = |kind| Self::shared(kind, WgpuBackend::Auto).ok();
         let first = kinds.into_iter().find_map(open);
-        first.ok_or(NoAdapter { wanted: "GPU" })
+        first.ok_or(NoAdapter {
+            wanted: "GPU",
+            instead: INSTEAD,
+        })
     }
 
     /// To draw on: a real GPU, else lavapipe.
@@ -149,6 +157,7 @@ impl Gpu {
             .or_else(|_| Self::lavapipe())
             .map_err(|_| NoAdapter {
                 wanted: "graphics adapter to draw with",
+                instead: "",
             })
     }
 
@@ -156,6 +165,7 @@ impl Gpu {
     pub fn lavapipe() -> Result<Self, NoAdapter> {
         Self::shared(DeviceKind::Cpu, WgpuBackend::Vulkan).map_err(|_| NoAdapter {
             wanted: "software Vulkan adapter (lavapipe)",
+            instead: INSTEAD,
         })
     }
 

@@ -8,6 +8,8 @@ use eframe::wgpu::FilterMode;
 
 /// Radians a point of dragging.
 const ORBIT: f32 = 0.007;
+/// Share of the distance a point of dragging with the other button.
+const PAN: f32 = 0.0012;
 /// Share of the distance a point of scrolling.
 const ZOOM: f32 = 0.002;
 /// Software rasterisers draw fewer pixels: every second one of each row and column.
@@ -92,7 +94,12 @@ impl Screen {
         if grabbed {
             return on_ground(camera).map(Touch::Drag);
         }
-        camera.orbit(-ORBIT * dragged.x, ORBIT * dragged.y);
+        if response.dragged_by(egui::PointerButton::Secondary) {
+            let metre = camera.distance * PAN;
+            camera.pan(-metre * dragged.x, metre * dragged.y);
+        } else {
+            camera.orbit(-ORBIT * dragged.x, ORBIT * dragged.y);
+        }
         None
     }
 

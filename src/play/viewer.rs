@@ -307,7 +307,7 @@ impl Viewer {
             ui.separator();
             ui.strong("Obstacle maps");
             ui.small(format!("cells of {CELL} m, ahead is up"));
-            maps::show(ui, &self.timeline.now().world.maps);
+            maps::show(ui, self.timeline.now().maps());
         }
         ui.separator();
         ui.checkbox(&mut self.search, "Search");

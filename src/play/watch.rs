@@ -7,12 +7,14 @@ use crate::motion::database::Database;
 use crate::train::record::Row;
 use crate::train::trainer::Watch;
 use crate::view::{Camera, Crowd, Scene};
+use crate::world::Task;
 use eframe::egui::{self, Ui};
 use eframe::egui_wgpu::RenderState;
 use std::sync::{Arc, PoisonError};
 
 pub struct Crowded {
     database: Arc<Database>,
+    task: Task,
     envs: usize,
     watch: Arc<Watch>,
     /// Once the worlds are open.
@@ -27,11 +29,13 @@ impl Crowded {
         gpu: &Gpu,
         window: &RenderState,
         database: Arc<Database>,
+        task: Task,
         envs: usize,
         watch: Arc<Watch>,
     ) -> Crowded {
         Crowded {
             database,
+            task,
             envs,
             watch,
             crowd: None,
@@ -53,6 +57,10 @@ impl Crowded {
         });
         let frame = egui::Frame::NONE;
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
+            if self.crowd.is_none() {
+                ui.centered_and_justified(|ui| ui.label("opening the worlds ..."));
+                return;
+            }
             let (scene, crowd) = (Scene::default(), self.crowd.as_ref());
             self.screen.show(ui, &scene, crowd, &mut self.camera, false);
         });
@@ -68,7 +76,7 @@ impl Crowded {
             .unwrap_or_else(PoisonError::into_inner);
         if let Some(worlds) = worlds.take() {
             let renderer = &self.screen.renderer;
-            let crowd = Crowd::new(renderer, &self.database, worlds, self.envs);
+            let crowd = Crowd::new(renderer, &self.database, worlds, &self.task, self.envs);
             self.camera.distance = 8.0 + 0.6 * crowd.side;
             self.camera.pitch = 0.5;
             self.crowd = Some(crowd);

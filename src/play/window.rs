@@ -6,6 +6,7 @@ use crate::gpu::Gpu;
 use crate::motion::database::Database;
 use crate::train::trainer::Watch;
 use crate::view::rollout::Stage;
+use crate::world::Task;
 use anyhow::{Context, Result, anyhow};
 use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use eframe::{NativeOptions, egui};
@@ -76,12 +77,15 @@ pub fn play(gpu: &Gpu, title: &str, stage: Stage, choices: Vec<Choice>) -> Resul
 pub fn watch(
     gpu: &Gpu,
     database: Arc<Database>,
+    task: Task,
     envs: usize,
     watch: Arc<Watch>,
     over: Arc<AtomicBool>,
 ) -> Result<()> {
     open(gpu, "footwork: training", over, |window| {
-        Ok(Box::new(Crowded::new(gpu, window, database, envs, watch)))
+        Ok(Box::new(Crowded::new(
+            gpu, window, database, task, envs, watch,
+        )))
     })
 }
 
@@ -127,7 +131,7 @@ fn open(
     closed.map_err(|error| match error {
         eframe::Error::AppCreation(error) => anyhow!("{error}"),
         eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => anyhow!(
-            "no window can be opened: there is no display. `footwork render` draws to files without one ({error})"
+            "no window can be opened: there is no display. `footwork render` draws a run to files without one"
         ),
         error => anyhow!("the window cannot be drawn: {error}"),
     })

@@ -24,8 +24,12 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use tree::{Boxes, LANES, Lanes, Tree};
 
-/// Queries a task of the thread pool answers.
-const TASK: usize = 16;
+/// Queries that a task of the thread pool answers together, at least and at most: what one of them has
+/// fetched from memory serves the others. In between, so many that each has to fetch [`SHARE`] bytes.
+const TASK: [usize; 2] = [16, 2048];
+const SHARE: usize = 1 << 16;
+/// Groups of a query that are looked into before all others: their winner lets most of those be skipped.
+const FIRST: usize = 4;
 /// Bytes of the table of poses unless asked otherwise: WebGPU's default limit of a binding.
 pub const MEMORY: usize = 128 << 20;
 
@@ -62,6 +66,14 @@ fn padded(bytes: &[u8]) -> Vec<u8> {
 pub struct Nearest {
     pub index: u32,
     pub distance: f32,
+}
+
+impl Nearest {
+    /// Row 0 stands when nothing is nearer than infinity, as with a query that is not a number.
+    const NONE: Nearest = Nearest {
+        index: 0,
+        distance: f32::INFINITY,
+    };
 }
 
 impl Index {
@@ -133,18 +145,25 @@ impl Index {
 
     /// Nearest candidate of one query, whose pose half is that of `frame`; of equals the lowest.
     pub fn nearest(&self, frame: u32, query: &[f32; PADDED]) -> Nearest {
-        nearest(self, frame, query)
+        let mut found = [Nearest::NONE];
+        nearest(self, &[frame], &[*query], &mut found);
+        found[0]
     }
 
     /// Nearest candidate of every query, on all cores.
     pub fn nearest_all(&self, frames: &[u32], queries: &[[f32; PADDED]], found: &mut [u32]) {
+        let task = queries.len().div_ceil(rayon::current_num_threads());
+        let enough = (self.tree.bytes() / SHARE).min(TASK[1]);
+        let task = task.min(enough).max(TASK[0]);
         frames
-            .par_chunks(TASK)
-            .zip(queries.par_chunks(TASK))
-            .zip(found.par_chunks_mut(TASK))
+            .par_chunks(task)
+            .zip(queries.par_chunks(task))
+            .zip(found.par_chunks_mut(task))
             .for_each(|((frames, queries), found)| {
-                for ((&frame, query), found) in frames.iter().zip(queries).zip(found) {
-                    *found = self.nearest(frame, query).index;
+                let mut nearest = vec![Nearest::NONE; found.len()];
+                self::nearest(self, frames, queries, &mut nearest);
+                for (found, nearest) in found.iter_mut().zip(nearest) {
+                    *found = nearest.index;
                 }
             });
     }
@@ -196,45 +215,79 @@ impl Best {
     "x86_64+avx2+fma",
     "aarch64+neon"
 ))]
-fn nearest(index: &Index, frame: u32, query: &[f32; PADDED]) -> Nearest {
-    let asked = Asked {
+fn nearest(index: &Index, frames: &[u32], queries: &[[f32; PADDED]], found: &mut [Nearest]) {
+    let poses = index.poses.gather(frames);
+    let asked = |(at, query)| Asked {
         query,
-        poses: index.poses.row(frame),
+        poses: poses.row(at),
         trajectory: index.axes.turn(query),
         slack: SLACK * (index.longest + length(query)),
     };
-    // Row 0 stands when nothing is nearer than infinity, as with a query that is not a number.
-    let mut best = Best {
-        nearest: Nearest {
-            index: 0,
-            distance: f32::INFINITY,
-        },
-        limit: f32::INFINITY,
-    };
-    // First the group whose bound is least: its winner lets most others be skipped.
-    let mut near = (f32::INFINITY, 0);
-    let mut outer = Vec::with_capacity(index.tree.outer.len() * LANES);
+    let asked: Vec<Asked> = queries.iter().enumerate().map(asked).collect();
+    // Of sixteen groups at a time, for every query.
+    let mut outer = Vec::with_capacity(index.tree.outer.len() * asked.len());
+    let mut near = vec![[(f32::INFINITY, usize::MAX); FIRST]; asked.len()];
     for (at, boxes) in index.tree.outer.iter().enumerate() {
-        outer.extend(bounds(
-            boxes,
-            &asked.trajectory,
-            asked.poses.to_groups(at * LANES),
-        ));
-    }
-    for (group, &bound) in outer.iter().enumerate() {
-        if bound < near.0 {
-            near = (bound, group);
+        for (asked, near) in asked.iter().zip(&mut near) {
+            let poses = asked.poses.to_groups(at * LANES);
+            let bounds = bounds(boxes, &asked.trajectory, poses);
+            let least = bounds.iter().fold(f32::INFINITY, |least, &b| least.min(b));
+            if least < near[FIRST - 1].0 {
+                for (lane, &bound) in bounds.iter().enumerate() {
+                    if bound < near[FIRST - 1].0 {
+                        insert(near, (bound, at * LANES + lane));
+                    }
+                }
+            }
+            outer.push(bounds);
         }
     }
-    visit(&index.tree, near.1, &asked, &mut best);
-    for (group, &bound) in outer.iter().enumerate() {
-        // Not the other way round: a bound that is no number skips nothing.
-        if bound > best.limit || group == near.1 {
-            continue;
+    let seeded = asked.iter().zip(&near).map(|(asked, near)| {
+        let mut best = Best {
+            nearest: Nearest::NONE,
+            limit: f32::INFINITY,
+        };
+        for &(_, group) in near {
+            visit(&index.tree, group, asked, &mut best);
         }
-        visit(&index.tree, group, &asked, &mut best);
+        best
+    });
+    let mut best: Vec<Best> = seeded.collect();
+    // Then sixteen groups after sixteen, for all queries, while they are at hand.
+    for (at, outer) in outer.chunks_exact(asked.len()).enumerate() {
+        for (i, bounds) in outer.iter().enumerate() {
+            // Not the other way round: a bound that is no number skips nothing.
+            if all_beyond(bounds, best[i].limit) {
+                continue;
+            }
+            for (lane, &bound) in bounds.iter().enumerate() {
+                let group = at * LANES + lane;
+                if bound > best[i].limit || near[i].iter().any(|near| near.1 == group) {
+                    continue;
+                }
+                visit(&index.tree, group, &asked[i], &mut best[i]);
+            }
+        }
     }
-    best.nearest
+    for (found, best) in found.iter_mut().zip(best) {
+        *found = best.nearest;
+    }
+}
+
+/// Whether no bound lets anything through, told without a branch for each.
+#[inline(always)]
+fn all_beyond(bounds: &[f32; LANES], limit: f32) -> bool {
+    bounds
+        .iter()
+        .fold(true, |all, &bound| all & (bound > limit))
+}
+
+/// Puts a group where it belongs among the nearest, the last of which it displaces.
+#[inline(always)]
+fn insert(near: &mut [(f32, usize); FIRST], group: (f32, usize)) {
+    let at = near.iter().filter(|near| near.0 <= group.0).count();
+    near[at..].rotate_right(1);
+    near[at] = group;
 }
 
 /// Looks into the leaves of a group that may hold something nearer, or as near and lower.
@@ -243,11 +296,11 @@ fn visit(tree: &Tree, group: usize, asked: &Asked, best: &mut Best) {
     let Some(boxes) = tree.inner.get(group) else {
         return;
     };
-    let inner = bounds(
-        boxes,
-        &asked.trajectory,
-        asked.poses.to_leaves(group, asked.query),
-    );
+    let mut inner = bounds(boxes, &asked.trajectory, asked.poses.to_leaves(group));
+    if all_beyond(&inner, best.limit) {
+        return;
+    }
+    asked.poses.raise(group, asked.query, &mut inner);
     for (lane, bound) in inner.into_iter().enumerate() {
         if bound > best.limit {
             continue;

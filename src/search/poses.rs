@@ -137,13 +137,48 @@ impl Poses {
             + size_of_val(&self.boxes[..])
     }
 
-    /// What is known of one frame's pose.
+    /// What is known of some frames' poses, copied together: so it is fetched in a row, and not here and
+    /// there when it is needed.
+    pub fn gather(&self, frames: &[u32]) -> Gathered<'_> {
+        let groups = self.shape.groups;
+        let mut gathered = Gathered {
+            poses: self,
+            by_group: Vec::with_capacity(frames.len() * groups),
+            by_leaf: Vec::new(),
+        };
+        if !self.by_leaf.is_empty() {
+            gathered.by_leaf.reserve(frames.len() * groups);
+        }
+        for &frame in frames {
+            let first = self.block_of[frame as usize] as usize * groups;
+            let codes = &self.by_group[first..][..groups];
+            gathered.by_group.extend_from_slice(codes);
+            let codes = self.by_leaf.get(first..first + groups);
+            gathered
+                .by_leaf
+                .extend_from_slice(codes.unwrap_or_default());
+        }
+        gathered
+    }
+}
+
+/// What is known of some frames' poses.
+pub struct Gathered<'a> {
+    poses: &'a Poses,
+    /// `[frames][groups]`
+    by_group: Vec<u8>,
+    /// `[frames][groups][LANES]`; empty where there are none.
+    by_leaf: Vec<[u8; LANES]>,
+}
+
+impl Gathered<'_> {
+    /// Of the frame `at` that place.
     #[inline(always)]
-    pub fn row(&self, frame: u32) -> Row<'_> {
-        let Shape { groups, step, .. } = self.shape;
-        let first = self.block_of[frame as usize] as usize * groups;
+    pub fn row(&self, at: usize) -> Row<'_> {
+        let Shape { groups, step, .. } = self.poses.shape;
+        let first = at * groups;
         Row {
-            boxes: &self.boxes,
+            boxes: &self.poses.boxes,
             by_group: &self.by_group[first..][..groups],
             by_leaf: self.by_leaf.get(first..first + groups),
             step,
@@ -173,21 +208,27 @@ impl Row<'_> {
         self.squares(padded)
     }
 
-    /// To the leaves of a group, of the pose of `query`.
+    /// To the leaves of a group.
     #[inline(always)]
-    pub fn to_leaves(self, group: usize, query: &[f32; PADDED]) -> [f32; LANES] {
-        match self.by_leaf {
-            Some(codes) => self.squares(codes[group]),
-            None => {
-                let mut bounds = self.squares([self.by_group[group]; LANES]);
-                for (bound, other) in bounds
-                    .iter_mut()
-                    .zip(self.boxes[group].outside(query, query))
-                {
-                    *bound = if other > *bound { other } else { *bound };
-                }
-                bounds
-            }
+    pub fn to_leaves(self, group: usize) -> [f32; LANES] {
+        self.squares(match self.by_leaf {
+            Some(codes) => codes[group],
+            None => [self.by_group[group]; LANES],
+        })
+    }
+
+    /// Raises bounds that begin with [`Row::to_leaves`] by what the boxes around the leaves' poses say
+    /// besides, where there are boxes.
+    #[inline(always)]
+    pub fn raise(self, group: usize, query: &[f32; PADDED], bounds: &mut [f32; LANES]) {
+        if self.by_leaf.is_some() {
+            return;
+        }
+        let known = self.squares([self.by_group[group]; LANES]);
+        let outside = self.boxes[group].outside(query, query);
+        for ((bound, known), outside) in bounds.iter_mut().zip(known).zip(outside) {
+            let more = outside - known;
+            *bound += if more > 0.0 { more } else { 0.0 };
         }
     }
 

@@ -61,7 +61,7 @@ pub enum CheckpointError {
     #[error(transparent)]
     Store(#[from] StoreError),
     #[error(
-        "{path} was trained with another database (fingerprint {found:08x}, this one has {wanted:08x}): the data its config.toml names has changed; bring the former back, or start another run"
+        "{path} was trained with another database (fingerprint {found:08x}, this one has {wanted:08x}): it is not the data the run was started with; bring that back or name it with --data, or start another run"
     )]
     Database {
         path: PathBuf,

@@ -100,7 +100,7 @@ impl Config {
             data: None,
             steps: match kind {
                 Kind::Plane => 1_000_000,
-                Kind::Obstacles => 3_000_000,
+                Kind::Obstacles => 6_000_000,
             },
             max_time_s: None,
             stop_success: None,
@@ -489,10 +489,12 @@ fn paper() -> Ppo {
 /// Found by measuring: see `BENCHMARKS.md`.
 fn fast_obstacles() -> Ppo {
     Ppo {
+        horizon: 32,
         epochs: 4,
+        minibatch: 1024,
         learning_rate: 7e-4,
         final_rate: 0.05,
-        anneal_steps: 3_000_000,
+        anneal_steps: 6_000_000,
         gamma: 0.99,
         // Wide: who never asks for a run does not learn to run.
         log_std: 1.0,

@@ -113,7 +113,7 @@ impl Folder {
         if !last.exists() {
             bail!(
                 "{} is missing: the run was stopped before it was saved; start it again with another --out, \
-                 or judge one of the other checkpoints there",
+                 or name one of the other checkpoints there, if there is one",
                 last.display()
             );
         }

@@ -135,10 +135,16 @@ impl Anatomy<'_> {
         for (joint, parent) in parents.filter_map(|(joint, parent)| Some((joint, (*parent)?))) {
             bones.extend(self.bone(joint, parent, Vec3::ZERO));
         }
-        for &(joint, offset) in &self.skeleton.ends {
+        for &(joint, offset) in self.tips() {
             bones.extend(self.bone(joint, joint, offset));
         }
         bones
+    }
+
+    /// Of leaf bones; some recordings have one of no length.
+    fn tips(&self) -> impl Iterator<Item = &(usize, Vec3)> {
+        let ends = self.skeleton.ends.iter();
+        ends.filter(|(_, offset)| offset.length() > 0.01 * self.scale)
     }
 
     /// The capsule that ends at `joint`, or at a leaf bone's tip `offset` from it.
@@ -254,7 +260,7 @@ impl Anatomy<'_> {
 
     fn is_leaf(&self, joint: usize) -> bool {
         let parents = &self.skeleton.parents;
-        let end = self.skeleton.ends.iter().any(|&(at, _)| at == joint);
+        let end = self.tips().any(|&(at, _)| at == joint);
         !end && !parents.contains(&Some(joint))
     }
 

@@ -7,11 +7,12 @@ use glam::{Mat4, Vec2, Vec3};
 /// Height of the picture as an angle, rad.
 const FIELD: f32 = 0.62;
 const NEAR: f32 = 0.05;
-const FAR: f32 = 600.0;
+/// What lies behind the haze is not drawn: so much, and so many distances.
+const FAR: [f32; 2] = [600.0, 20.0];
 /// Pitches that keep the eye above the ground and off the pole, rad.
 pub const PITCH: [f32; 2] = [0.02, 1.55];
 /// Distances, m.
-pub const DISTANCE: [f32; 2] = [0.5, 200.0];
+pub const DISTANCE: [f32; 2] = [0.5, 2000.0];
 
 /// A camera on a sphere around the point it looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +47,8 @@ impl Camera {
 
     /// World to clip space, for a picture `aspect` times as wide as high.
     pub fn clip(&self, aspect: f32) -> Mat4 {
-        perspective(FIELD, aspect, NEAR, FAR) * look_at_mat4(self.eye(), self.focus, Vec3::Y)
+        perspective(FIELD, aspect, NEAR, FAR[0] + FAR[1] * self.distance)
+            * look_at_mat4(self.eye(), self.focus, Vec3::Y)
     }
 
     /// Turns around the focus, rad.
@@ -63,6 +65,12 @@ impl Camera {
     pub fn follow(&mut self, at: [f32; 2], share: f32) {
         let there = Vec3::new(at[0], self.focus.y, at[1]);
         self.focus += share * (there - self.focus);
+    }
+
+    /// Moves the focus over the ground: to the right of the picture and away from the eye, m.
+    pub fn pan(&mut self, right: f32, away: f32) {
+        let (sin, cos) = self.yaw.sin_cos();
+        self.focus += Vec3::new(cos * right - sin * away, 0.0, -sin * right - cos * away);
     }
 
     /// The ground point under a place of the picture, from (-1, -1) at the lower left to (1, 1).

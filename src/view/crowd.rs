@@ -2,10 +2,12 @@
 
 use super::body::Body;
 use super::painter::{Mesh, Pass, Pipelines};
-use super::renderer::{Renderer, sphere, vertex_buffer};
-use crate::gpu::shader::DRAW_CROWD;
+use super::renderer::{Renderer, cube, sphere, vertex_buffer};
+use crate::gpu::Shared;
+use crate::gpu::shader::{DRAW_CROWD, DRAW_CROWD_BLOCKS};
 use crate::motion::database::Database;
 use crate::playback::Shown;
+use crate::world::Task;
 use crate::world::watched::{State, Watched};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -13,12 +15,12 @@ use rayon::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
-/// Between two environments' origins, m.
+/// Between two environments' origins on the plane, and between two squares of obstacles, m.
 const SPACING: f32 = 4.0;
 /// Farthest of a body's points from its origin, m; as in the shader.
 const REACH: f32 = 4.0;
 
-/// `Crowd` of `shaders/view/crowd.wgsl`.
+/// `Crowd` of `shaders/shared/crowd.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Params {
@@ -26,8 +28,9 @@ struct Params {
     bones: u32,
     points: u32,
     columns: u32,
+    count: u32,
     spacing: f32,
-    unused: [u32; 3],
+    unused: [u32; 2],
 }
 
 /// A state on the host and its copies on the device.
@@ -35,13 +38,20 @@ struct Copied {
     state: Arc<Mutex<State>>,
     real: wgpu::Buffer,
     whole: wgpu::Buffer,
+    boxes: Option<wgpu::Buffer>,
 }
 
-pub struct Crowd {
+/// One mesh, drawn many times where a shader finds its places.
+struct Shape {
     pipelines: Pipelines,
     mesh: Mesh,
     group: wgpu::BindGroup,
     instances: u32,
+}
+
+pub struct Crowd {
+    /// The characters with their targets; then the obstacles, if there are any.
+    shapes: Vec<Shape>,
     /// Side of the square they stand on, m.
     pub side: f32,
     copied: Option<Copied>,
@@ -50,8 +60,14 @@ pub struct Crowd {
 }
 
 impl Crowd {
-    /// Of a batch of `envs` worlds, on the renderer's device.
-    pub fn new(renderer: &Renderer, database: &Database, watched: Watched, envs: usize) -> Crowd {
+    /// Of a batch of `envs` worlds of a task, on the renderer's device.
+    pub fn new(
+        renderer: &Renderer,
+        database: &Database,
+        watched: Watched,
+        task: &Task,
+        envs: usize,
+    ) -> Crowd {
         let device = &renderer.device;
         let body = Body::of(&database.skeleton, &database.roles);
         let columns = (envs as f32).sqrt().ceil() as u32;
@@ -60,8 +76,12 @@ impl Crowd {
             bones: body.bones.len() as u32,
             points: body.points().len() as u32,
             columns,
-            spacing: SPACING,
-            unused: [0; 3],
+            count: task.obstacles() as u32,
+            spacing: match task {
+                Task::Plane(_) => SPACING,
+                Task::Obstacles(task) => 2.0 * task.square + SPACING,
+            },
+            unused: [0; 2],
         };
         let storage = |contents: &[u8], usage| {
             device.create_buffer_init(&BufferInitDescriptor {
@@ -74,45 +94,47 @@ impl Crowd {
         let points = storage(bytemuck::cast_slice(&points(database, &body)), read);
         let bones = storage(bytemuck::cast_slice(&body.table()), read);
         let uniform = storage(bytemuck::bytes_of(&params), wgpu::BufferUsages::UNIFORM);
+        let uniform = uniform.as_entire_binding();
         let copied = copied(&watched, |bytes| {
             storage(bytes, read | wgpu::BufferUsages::COPY_DST)
         });
-        let layout = layout(device);
-        let (real, whole) = match (&watched, &copied) {
-            (Watched::Gpu(buffers), _) => (buffers.real.binding(), buffers.whole.binding()),
+        let (real, whole, boxes) = match (&watched, &copied) {
+            (Watched::Gpu(buffers), _) => (
+                buffers.real.binding(),
+                buffers.whole.binding(),
+                buffers.boxes.as_ref().map(Shared::binding),
+            ),
             (_, Some(copied)) => (
                 copied.real.as_entire_binding(),
                 copied.whole.as_entire_binding(),
+                copied.boxes.as_ref().map(wgpu::Buffer::as_entire_binding),
             ),
             (Watched::Cpu(_), None) => unreachable!("a state on the host is always copied"),
         };
-        let bound = [
-            real,
-            whole,
-            points.as_entire_binding(),
-            bones.as_entire_binding(),
-            uniform.as_entire_binding(),
-        ];
-        let entries: Vec<_> = (0..)
-            .zip(bound)
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("crowd"),
-            layout: &layout,
-            entries: &entries,
-        });
+        let (points, bones) = (points.as_entire_binding(), bones.as_entire_binding());
         let corner = wgpu::vertex_attr_array![0 => Float32x4];
-        let buffers = [vertex_buffer::<[f32; 4]>(
-            wgpu::VertexStepMode::Vertex,
-            &corner,
+        let mut shapes = vec![Shape::new(
+            renderer,
+            DRAW_CROWD,
+            vertex_buffer::<[f32; 4]>(wgpu::VertexStepMode::Vertex, &corner),
+            Mesh::new(device, &sphere(8, 2)),
+            vec![real, whole, points, bones, uniform.clone()],
+            params.envs * (params.bones + 1),
         )];
+        if let Some(boxes) = boxes {
+            let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+            shapes.push(Shape::new(
+                renderer,
+                DRAW_CROWD_BLOCKS,
+                vertex_buffer::<[[f32; 3]; 2]>(wgpu::VertexStepMode::Vertex, &corner),
+                Mesh::new(device, &cube()),
+                vec![boxes, uniform],
+                params.envs * params.count,
+            ));
+        }
         Crowd {
-            pipelines: renderer.pipelines(DRAW_CROWD, &buffers, Some(&layout)),
-            mesh: Mesh::new(device, &sphere(8, 2)),
-            group,
-            instances: params.envs * (params.bones + 1),
-            side: columns as f32 * SPACING,
+            shapes,
+            side: columns as f32 * params.spacing,
             copied,
             _watched: watched,
         }
@@ -124,13 +146,48 @@ impl Crowd {
             let state = copied.state.lock().unwrap_or_else(PoisonError::into_inner);
             queue.write_buffer(&copied.real, 0, bytemuck::cast_slice(&state.real));
             queue.write_buffer(&copied.whole, 0, bytemuck::cast_slice(&state.whole));
+            if let Some(boxes) = &copied.boxes {
+                queue.write_buffer(boxes, 0, bytemuck::cast_slice(&state.boxes));
+            }
         }
     }
 
     pub fn draw(&self, pass: &mut wgpu::RenderPass, which: Pass) {
-        pass.set_pipeline(self.pipelines.of(which));
-        pass.set_bind_group(2, &self.group, &[]);
-        self.mesh.draw(pass, self.instances);
+        for shape in &self.shapes {
+            pass.set_pipeline(shape.pipelines.of(which));
+            pass.set_bind_group(2, &shape.group, &[]);
+            shape.mesh.draw(pass, shape.instances);
+        }
+    }
+}
+
+impl Shape {
+    /// From the text of a shader that binds storage buffers and, last, the crowd as group 2.
+    fn new(
+        renderer: &Renderer,
+        text: &str,
+        corners: Option<wgpu::VertexBufferLayout>,
+        mesh: Mesh,
+        bound: Vec<wgpu::BindingResource>,
+        instances: u32,
+    ) -> Shape {
+        let device = &renderer.device;
+        let layout = layout(device, bound.len() as u32);
+        let entries: Vec<_> = (0..)
+            .zip(bound)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("crowd"),
+            layout: &layout,
+            entries: &entries,
+        });
+        Shape {
+            pipelines: renderer.pipelines(text, &[corners], Some(&layout)),
+            mesh,
+            group,
+            instances,
+        }
     }
 }
 
@@ -139,9 +196,11 @@ fn copied(watched: &Watched, buffer: impl Fn(&[u8]) -> wgpu::Buffer) -> Option<C
         return None;
     };
     let now = state.lock().unwrap_or_else(PoisonError::into_inner);
+    let boxes = bytemuck::cast_slice(&now.boxes);
     Some(Copied {
         real: buffer(bytemuck::cast_slice(&now.real)),
         whole: buffer(bytemuck::cast_slice(&now.whole)),
+        boxes: (!boxes.is_empty()).then(|| buffer(boxes)),
         state: state.clone(),
     })
 }
@@ -173,22 +232,24 @@ fn share(metres: f32) -> u16 {
     (metres / REACH * most).round().clamp(-most, most) as i16 as u16
 }
 
-fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+/// Storage buffers, and last a uniform.
+fn layout(device: &wgpu::Device, count: u32) -> wgpu::BindGroupLayout {
     let entry = |binding| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::VERTEX,
         ty: wgpu::BindingType::Buffer {
-            ty: match binding {
-                4 => wgpu::BufferBindingType::Uniform,
-                _ => wgpu::BufferBindingType::Storage { read_only: true },
+            ty: match binding + 1 == count {
+                true => wgpu::BufferBindingType::Uniform,
+                false => wgpu::BufferBindingType::Storage { read_only: true },
             },
             has_dynamic_offset: false,
             min_binding_size: None,
         },
         count: None,
     };
+    let entries: Vec<_> = (0..count).map(entry).collect();
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("crowd"),
-        entries: &[0, 1, 2, 3, 4].map(entry),
+        entries: &entries,
     })
 }

@@ -37,6 +37,22 @@ pub fn frame(folder: &Path, number: usize) -> PathBuf {
     folder.join(format!("frame-{number:05}.png"))
 }
 
+/// Takes an earlier film's frames out of a folder, lest they be taken for this one's.
+///
+/// # Errors
+/// The folder cannot be read, or a frame cannot be removed.
+pub fn clear(folder: &Path) -> Result<()> {
+    let what = || format!("cannot clear the frames in {}", folder.display());
+    for entry in std::fs::read_dir(folder).with_context(what)? {
+        let path = entry.with_context(what)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if name.starts_with("frame-") && name.ends_with(".png") {
+            std::fs::remove_file(&path).with_context(what)?;
+        }
+    }
+    Ok(())
+}
+
 /// Writes a PNG file.
 ///
 /// # Errors

@@ -75,8 +75,8 @@ fn obstacles(scene: &mut Scene, rollout: &Rollout) {
     let at = rollout.shown.at;
     for (slot, [x, z, half_x, half_z]) in rollout.obstacles().into_iter().enumerate() {
         let hit = struck && (x - at[0]).abs() <= half_x && (z - at[1]).abs() <= half_z;
-        // Obstacles overlap: each has its own height and shade.
-        let own = (slot * 5 % 8) as f32 / 8.0;
+        // Obstacles overlap: each has its own height and shade. Steps of the golden ratio never meet.
+        let own = (slot as f32 * 0.618_034).fract();
         let height = HEIGHT * (0.8 + 0.4 * own);
         scene.blocks.push(Block {
             centre: [x, 0.5 * height, z],

@@ -247,7 +247,7 @@ pub fn sphere(around: usize, up: usize) -> Vec<[f32; 4]> {
 }
 
 /// The cube from -1 to 1 as triangles: corner and normal.
-fn cube() -> Vec<[[f32; 3]; 2]> {
+pub fn cube() -> Vec<[[f32; 3]; 2]> {
     let mut corners = Vec::new();
     for axis in 0..3 {
         for sign in [-1.0f32, 1.0] {

@@ -50,6 +50,8 @@ pub struct Step {
     pub ended: u32,
     /// `[boxes::FIELDS][count]` before the step, m.
     boxes: Vec<f32>,
+    /// The obstacle maps it was decided by.
+    maps: Vec<u32>,
 }
 
 /// The character at one frame, and all that decides the next ones.
@@ -121,6 +123,7 @@ impl Rollout {
 
     fn decide(&mut self, stage: &Stage, controller: &dyn Controller) -> Result<()> {
         let (from, boxes) = (standing(&self.world, 0), self.world.boxes.clone());
+        let maps = self.world.maps.clone();
         advance(&mut self.world, controller)?;
         self.step = Some(Step {
             asked: asked(&stage.database, &self.world, from),
@@ -128,9 +131,17 @@ impl Rollout {
             ended: self.world.ended[0],
             from,
             boxes,
+            maps,
         });
         self.played = 0;
         Ok(())
+    }
+
+    /// The obstacle maps that the running step was decided by.
+    pub fn maps(&self) -> &[u32] {
+        self.step
+            .as_ref()
+            .map_or(&self.world.maps, |step| &step.maps)
     }
 
     /// m, on the ground.
@@ -143,6 +154,12 @@ impl Rollout {
         for (field, value) in [real::TARGET_X, real::TARGET_Z].into_iter().zip(at) {
             self.world.real[field] = value;
         }
+        // An arrival on the way would draw another.
+        if let Some(step) = &mut self.step
+            && step.ended == end::REACHED
+        {
+            step.ended = end::RUNNING;
+        }
     }
 
     /// Puts an obstacle's centre elsewhere, m.
@@ -154,6 +171,7 @@ impl Rollout {
                 step.boxes[field * count + slot] = value;
             }
         }
+        self.world.look_again();
     }
 
     /// Centre and half sides (m) of every obstacle at the frame shown.

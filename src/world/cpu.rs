@@ -196,6 +196,17 @@ impl CpuWorld {
         })
     }
 
+    /// Brings what is seen now up to date with obstacles that somebody has moved.
+    pub fn look_again(&mut self) {
+        let before = self.maps.clone();
+        self.sense(true);
+        self.sense(false);
+        let seen = self.maps.chunks_exact_mut(MAP_WORDS);
+        for (maps, before) in seen.zip(before.chunks_exact(MAP_WORDS)) {
+            maps[MAP_WORDS / 2..].copy_from_slice(&before[MAP_WORDS / 2..]);
+        }
+    }
+
     /// Goes on with these environments alone; one may be named several times.
     pub fn keep(&mut self, envs: &[usize]) {
         let (old, count) = (self.rules.envs, self.rules.task.obstacles());
@@ -258,7 +269,7 @@ impl World for CpuWorld {
         self.rules.clock += 1;
         if let Some(watched) = &self.watched {
             let mut state = watched.lock().unwrap_or_else(PoisonError::into_inner);
-            state.set(&self.real, &self.whole);
+            state.set(&self.real, &self.whole, &self.boxes);
         }
     }
 
@@ -312,7 +323,7 @@ impl World for CpuWorld {
 
     fn watch(&mut self) -> anyhow::Result<Watched> {
         let mut state = State::default();
-        state.set(&self.real, &self.whole);
+        state.set(&self.real, &self.whole, &self.boxes);
         let state = Arc::new(Mutex::new(state));
         self.watched = Some(state.clone());
         Ok(Watched::Cpu(state))

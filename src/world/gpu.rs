@@ -262,6 +262,10 @@ impl World for GpuWorld {
         Ok(Watched::Gpu(Box::new(Buffers {
             real: self.real.share(&self.gpu)?,
             whole: self.whole.share(&self.gpu)?,
+            boxes: match self.rules.task.obstacles() {
+                0 => None,
+                _ => Some(self.boxes.share(&self.gpu)?),
+            },
         })))
     }
 

@@ -16,6 +16,8 @@ pub struct Buffers {
     pub real: Shared,
     /// `[whole::FIELDS][envs]`
     pub whole: Shared,
+    /// `[envs][boxes::FIELDS][count]`, where there are obstacles.
+    pub boxes: Option<Shared>,
 }
 
 /// The same, on the host.
@@ -23,14 +25,17 @@ pub struct Buffers {
 pub struct State {
     pub real: Vec<f32>,
     pub whole: Vec<u32>,
+    pub boxes: Vec<f32>,
 }
 
 impl State {
     /// Takes what a step has left.
-    pub fn set(&mut self, real: &[f32], whole: &[u32]) {
+    pub fn set(&mut self, real: &[f32], whole: &[u32], boxes: &[f32]) {
         self.real.clear();
         self.real.extend_from_slice(real);
         self.whole.clear();
         self.whole.extend_from_slice(whole);
+        self.boxes.clear();
+        self.boxes.extend_from_slice(boxes);
     }
 }

@@ -1,18 +1,20 @@
 use crate::{DATABASE, Picture, gpu};
 use footwork::gpu::Device;
-use footwork::kernels::layout::{real, whole};
+use footwork::kernels::layout::{boxes, real, whole};
 use footwork::playback::Shown;
 use footwork::view::body::Body;
+use footwork::view::scene::Block;
 use footwork::view::{Camera, Crowd, Renderer, Scene};
-use footwork::world::{self, Plane, Setup, Task};
+use footwork::world::{self, Obstacles, Plane, Setup, Task};
 use glam::Vec3;
 
 const SIZE: [u32; 2] = [240, 160];
 
 /// A crowd of one must look like its only character, wherever its state is kept.
 fn one_of_a_crowd(device: Device) {
+    let task = Task::Plane(Plane::default());
     let setup = Setup {
-        task: Task::Plane(Plane::default()),
+        task,
         envs: 1,
         horizon: 4,
         seed: 5,
@@ -21,7 +23,7 @@ fn one_of_a_crowd(device: Device) {
     let mut world = world::open(&device, &DATABASE, &setup);
     let mut renderer = Renderer::new(&gpu());
     let watched = world.watch().unwrap();
-    let crowd = Crowd::new(&renderer, &DATABASE, watched, 1);
+    let crowd = Crowd::new(&renderer, &DATABASE, watched, &task, 1);
     for _ in 0..3 {
         let observed = world.observe();
         let action = observed.zeros_like().narrow(1, 0, 12);
@@ -60,6 +62,54 @@ fn one_of_a_crowd(device: Device) {
     assert!(far < 0.01, "{far}");
     let (far, _) = alone.difference(&empty);
     assert!(far > 0.03, "{far}");
+}
+
+/// Its obstacles must lie where a single world's would be drawn.
+fn obstacles_of_a_crowd(device: Device) {
+    let task = Task::Obstacles(Obstacles::FAST);
+    let setup = Setup {
+        task,
+        envs: 1,
+        horizon: 4,
+        seed: 5,
+        level: 9,
+    };
+    let mut world = world::open(&device, &DATABASE, &setup);
+    let mut renderer = Renderer::new(&gpu());
+    let watched = world.watch().unwrap();
+    let crowd = Crowd::new(&renderer, &DATABASE, watched, &task, 1);
+    let state = world.snapshot().unwrap();
+    let mut scene = Scene::default();
+    for slot in 0..100 {
+        let at = |field: usize| state.boxes[field * 100 + slot];
+        let own = (slot as f32 * 0.618_034).fract();
+        let height = 0.35 * (0.8 + 0.4 * own);
+        scene.blocks.push(Block {
+            centre: [at(boxes::X), 0.5 * height, at(boxes::Z)],
+            half: [at(boxes::HALF_X), 0.5 * height, at(boxes::HALF_Z)],
+            colour: [0.42, 0.34, 0.30].map(|value| value * (0.75 + 0.5 * own)),
+        });
+    }
+    let camera = Camera {
+        distance: 30.0,
+        pitch: 1.0,
+        ..Camera::default()
+    };
+    let mut draw = |scene: &Scene, crowd| Picture::with(&mut renderer, scene, crowd, &camera, SIZE);
+    let alone = draw(&scene, None);
+    let crowd = draw(&Scene::default(), Some(&crowd));
+    let empty = draw(&Scene::default(), None);
+    // The crowd has a character and its target besides.
+    let (far, _) = alone.difference(&crowd);
+    assert!(far < 0.02, "{far}");
+    let (far, _) = alone.difference(&empty);
+    assert!(far > 0.1, "{far}");
+}
+
+#[test]
+fn obstacles_are_drawn_from_where_they_are_kept() {
+    obstacles_of_a_crowd(Device::from(gpu()));
+    obstacles_of_a_crowd(Device::Cpu);
 }
 
 #[test]
