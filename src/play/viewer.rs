@@ -9,6 +9,7 @@ use super::source::{self, Source, Steered};
 use super::timeline::Timeline;
 use crate::gpu::Gpu;
 use crate::kernels::layout::CELL;
+use crate::motion::database::PADDED;
 use crate::motion::features::PLAYED;
 use crate::playback::Shown;
 use crate::train::controller::Controller;
@@ -25,6 +26,8 @@ const RATE: f32 = 30.0;
 const CATCH_UP: f32 = 6.0;
 /// How quickly the camera follows, a share a frame.
 const FOLLOW: f32 = 0.2;
+/// Width of a frame's name in the search's table, points.
+const NAME: f32 = 150.0;
 /// Pieces of motion listed.
 const LISTED: usize = 8;
 
@@ -54,8 +57,8 @@ pub struct Viewer {
     grabbed: Option<(usize, [f32; 2])>,
     search: bool,
     found: Vec<Found>,
-    /// The step that `found` belongs to: its frame in the timeline.
-    found_at: Option<usize>,
+    /// The query that `found` answers.
+    found_for: Option<[f32; PADDED]>,
     /// What went wrong last.
     problem: Option<String>,
     screen: Screen,
@@ -98,7 +101,7 @@ impl Viewer {
             grabbed: None,
             search: true,
             found: Vec::new(),
-            found_at: None,
+            found_for: None,
             problem: None,
             screen: Screen::new(gpu, window),
             #[cfg(feature = "gamepad")]
@@ -339,7 +342,6 @@ impl Viewer {
         if ui.button("Next episode").clicked() {
             let next = self.timeline.now().episode + 1;
             self.timeline = Timeline::new(Rollout::new(&self.stage, next));
-            self.found_at = None;
         }
         ui.small("Click the ground to move the target; drag an obstacle; drag elsewhere to turn the camera.");
     }
@@ -384,9 +386,9 @@ impl Viewer {
     fn state(&self, ui: &mut Ui) {
         let now = self.timeline.now();
         let [x, z] = now.shown.at;
-        ui.strong(format!("Episode {}", now.episode));
         ui.label(format!("at {x:.2}, {z:.2} m"));
         if let Source::Policy(_) = self.source {
+            ui.strong(format!("Episode {}", now.episode));
             let [tx, tz] = now.target();
             ui.label(format!("{:.2} m to the target", (tx - x).hypot(tz - z)));
         }
@@ -408,11 +410,10 @@ impl Viewer {
         if now.step.is_none() {
             return;
         }
-        // The frame at which this step was decided.
-        let decided = self.timeline.at().checked_sub(now.played);
-        if self.found_at != decided || decided.is_none() {
-            self.found = nearest(&self.stage.database, &now.world.queries[0], LISTED);
-            self.found_at = decided;
+        let query = now.world.queries[0];
+        if self.found_for != Some(query) {
+            self.found = nearest(&self.stage.database, &query, LISTED);
+            self.found_for = Some(query);
         }
         egui::Grid::new("found").striped(true).show(ui, |ui| {
             for header in ["frame", "pose", "trajectory", "sum"] {
@@ -420,7 +421,9 @@ impl Viewer {
             }
             ui.end_row();
             for found in &self.found {
-                ui.label(self.name(found.frame));
+                // Columns do not move with the names' lengths.
+                let name = egui::Label::new(self.name(found.frame)).truncate();
+                ui.add_sized([NAME, ui.spacing().interact_size.y], name);
                 for part in [found.pose, found.trajectory, found.total()] {
                     ui.monospace(format!("{part:.2}"));
                 }

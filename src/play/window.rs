@@ -103,6 +103,13 @@ fn open(
             // The first reason is the one to tell.
             let _ = told.set(message);
         });
+    // What is drawn after that fails, which wgpu would panic about.
+    let failed = lost.clone();
+    gpu.setup
+        .device
+        .on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            let _ = failed.set(error.to_string());
+        }));
     let options = NativeOptions {
         viewport: egui::ViewportBuilder::default().with_inner_size([1280.0, 760.0]),
         wgpu_options: WgpuConfiguration {

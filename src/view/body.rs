@@ -138,6 +138,8 @@ impl Anatomy<'_> {
         for &(joint, offset) in self.tips() {
             bones.extend(self.bone(joint, joint, offset));
         }
+        let joints = 0..self.skeleton.joints();
+        bones.extend(joints.filter_map(|joint| self.skull(joint)));
         bones
     }
 
@@ -167,7 +169,7 @@ impl Anatomy<'_> {
             },
             Part::Spine => [0.115, 0.125],
             Part::Collar => return None,
-            Part::Neck if tip == 0 && !self.is_leaf(joint) => [0.055, 0.050],
+            Part::Neck if tip == 0 => [0.055, 0.050],
             Part::Neck => [0.070, 0.088],
         };
         let [a, b] = radii.map(|radius| self.scale * radius);
@@ -183,6 +185,18 @@ impl Anatomy<'_> {
                 radius: b,
             },
         ))
+    }
+
+    /// Where a skeleton ends at the head's joint: what lies above, on from the neck.
+    fn skull(&self, joint: usize) -> Option<Bone> {
+        let way = self.skeleton.offsets[joint].normalize_or_zero();
+        let head = self.part(joint) == Part::Neck && self.is_leaf(joint) && way != Vec3::ZERO;
+        let spot = |above: f32, radius: f32| Spot {
+            joint,
+            offset: self.scale * above * way,
+            radius: self.scale * radius,
+        };
+        head.then(|| self.between(spot(0.03, 0.080), spot(0.11, 0.092)))
     }
 
     /// Pelvis, flanks and shoulders, which no single bone of a skeleton is as wide as.
