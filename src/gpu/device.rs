@@ -16,7 +16,7 @@ pub enum Choice {
     /// A real GPU if there is one, else the native CPU path.
     #[default]
     Auto,
-    /// The native CPU path: SIMD on all cores, burn's `flex` networks.
+    /// The native CPU path: SIMD on all cores, networks by kernels of our own.
     Cpu,
     /// A real GPU: discrete, else integrated, else virtual.
     Gpu,

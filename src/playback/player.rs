@@ -14,8 +14,9 @@ use std::sync::Arc;
 
 /// Hips come down for a foot by this much at most, m.
 const LOWEST: f32 = 0.12;
-/// How fast they follow what the feet need, a frame.
-const FOLLOW: f32 = 0.5;
+/// How fast they come down, for a foot that would slide, and how fast they rise again, a frame.
+const DOWN: f32 = 3.5;
+const RISE: f32 = 0.4;
 
 /// What all players of one database share.
 #[derive(Debug)]
@@ -121,7 +122,8 @@ impl Player {
                 lack = lack.max(lacks.unwrap_or(0.0).min(LOWEST));
             }
         }
-        pose.root.y -= self.hips.follow(lack, FOLLOW);
+        let rate = if lack > self.hips.place { DOWN } else { RISE };
+        pose.root.y -= self.hips.follow(lack, rate);
         for (leg, target) in self.feet.legs.iter().zip(targets) {
             two_joint::reach(skeleton, pose, leg, target);
         }

@@ -2,7 +2,7 @@
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spring {
-    place: f32,
+    pub place: f32,
     /// Per frame.
     speed: f32,
 }
