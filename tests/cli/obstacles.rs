@@ -4,7 +4,8 @@ use super::{Place, keys, rows};
 use serde_json::Value;
 
 /// Small networks: what is tested here is not how well they learn.
-const SMALL: &str = "[ppo.network]\nsight = [16]\nhidden = [16]\n";
+const SMALL: &str =
+    "[ppo]\nhorizon = 16\nminibatch = 512\n[ppo.network]\nsight = [16]\nhidden = [16]\n";
 const TRAIN: &str =
     "train obstacles --data small.footwork --device cpu --envs 64 --config small.toml";
 
@@ -204,6 +205,6 @@ fn a_batch_that_a_device_cannot_hold_is_refused() {
     place.refused(
         "train obstacles --data small.footwork --device lavapipe --envs 4096 --out run",
         1,
-        &["observations of an update take 133 MiB", "smaller --envs"],
+        &["observations of an update take 265 MiB", "smaller --envs"],
     );
 }
