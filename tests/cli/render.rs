@@ -31,6 +31,10 @@ fn draws_pictures_animations_and_frames() {
         .filter(|path| path.parent() == Some(&place.path("frames")));
     assert_eq!(frames.count(), 5);
     assert!(png(&place, "frames/frame-00000.png").2 == first);
+    // A shorter film leaves nothing of a longer one.
+    place.done("render run -o frames --force --seconds 0.2 --rate 10 --size 96x64");
+    assert!(place.path("frames/frame-00001.png").exists());
+    assert!(!place.path("frames/frame-00002.png").exists());
 
     place.done("render run -o walk.gif --seconds 1 --rate 15 --size 96x64 --joined simple");
     let file = std::fs::File::open(place.path("walk.gif")).unwrap();

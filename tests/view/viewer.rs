@@ -5,10 +5,12 @@ use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
+use footwork::kernels::layout::end;
 use footwork::motion::features::PLAYED;
 use footwork::play::Viewer;
 use footwork::play::viewer::Choice;
 use footwork::play::window::shared;
+use footwork::view::rollout::Rollout;
 use footwork::world::{Obstacles, Plane, Task};
 
 fn plane() -> Task {
@@ -201,4 +203,28 @@ fn tells_why_a_frame_was_chosen() {
     let shades: std::collections::HashSet<_> =
         (0..500).map(|x| picture.get_pixel(x, 300).0).collect();
     assert!(shades.len() > 5);
+}
+
+#[test]
+fn an_obstacle_moved_by_hand_is_seen() {
+    let stage = stage(Task::Obstacles(Obstacles::FAST));
+    let mut rollout = Rollout::new(&stage, 0);
+    let before = rollout.world.maps.clone();
+    rollout.move_obstacle(0, rollout.shown.at);
+    assert_ne!(rollout.world.maps, before);
+}
+
+#[test]
+fn a_target_set_on_arrival_stays() {
+    let stage = stage(plane());
+    let mut rollout = Rollout::new(&stage, 0);
+    rollout.set_target(rollout.shown.at);
+    rollout.advance(&stage, &Walker).unwrap();
+    let ended = rollout.step.as_ref().map(|step| step.ended);
+    assert_eq!(ended, Some(end::REACHED));
+    rollout.set_target([40.0, 30.0]);
+    for _ in 0..=PLAYED {
+        rollout.advance(&stage, &Walker).unwrap();
+    }
+    assert_eq!(rollout.target(), [40.0, 30.0]);
 }
