@@ -89,7 +89,9 @@ fn name(file: &Path) -> &str {
 fn drawing(root: &Path, file: &Path) -> Result<String, String> {
     let (source, module) = validated(root, file)?;
     let entries = module.entry_points.iter().map(|entry| &entry.name[..]);
-    if entries.ne(["place", "paint"]) {
+    let mut entries: Vec<&str> = entries.collect();
+    entries.sort_unstable();
+    if entries != ["paint", "place"] {
         let file = file.display();
         return Err(format!(
             "{file}: its entry points must be `place` and `paint`"

@@ -1,13 +1,6 @@
 // Upright boxes, one an instance.
 
-#import light
-
-struct Corner {
-    @builtin(position) clip: vec4f,
-    @location(0) at: vec3f,
-    @location(1) normal: vec3f,
-    @location(2) colour: vec3f,
-}
+#import solid
 
 @vertex
 fn place(
@@ -20,10 +13,5 @@ fn place(
     @location(4) colour: vec3f,
 ) -> Corner {
     let at = centre + corner * half;
-    return Corner(view.clip * vec4f(at, 1.0), at, normal, colour);
-}
-
-@fragment
-fn paint(corner: Corner) -> @location(0) vec4f {
-    return shade(corner.at, normalize(corner.normal), corner.colour);
+    return seen(at, normal, colour);
 }

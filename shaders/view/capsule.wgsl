@@ -1,14 +1,7 @@
 // Capsules, one an instance.
 
-#import light
 #import round
-
-struct Corner {
-    @builtin(position) clip: vec4f,
-    @location(0) at: vec3f,
-    @location(1) normal: vec3f,
-    @location(2) colour: vec3f,
-}
+#import solid
 
 @vertex
 fn place(
@@ -20,10 +13,5 @@ fn place(
     @location(3) colour: vec3f,
 ) -> Corner {
     let surface = capsule_surface(unit.xyz, unit.w, a, b);
-    return Corner(view.clip * vec4f(surface.at, 1.0), surface.at, surface.normal, colour);
-}
-
-@fragment
-fn paint(corner: Corner) -> @location(0) vec4f {
-    return shade(corner.at, normalize(corner.normal), corner.colour);
+    return seen(surface.at, surface.normal, colour);
 }

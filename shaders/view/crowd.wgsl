@@ -9,8 +9,8 @@
 #import crowd
 #import layout
 #import math
-#import light
 #import round
+#import solid
 
 struct Bone {
     // Numbers of its ends' points.
@@ -31,13 +31,6 @@ struct Bone {
 // Farthest of a body's points from its origin, m.
 const REACH = 4.0;
 const TARGET = vec3f(0.06, 0.50, 0.22);
-
-struct Corner {
-    @builtin(position) clip: vec4f,
-    @location(0) at: vec3f,
-    @location(1) normal: vec3f,
-    @location(2) colour: vec3f,
-}
 
 fn field(place: u32, env: u32) -> f32 {
     return real[place * crowd.envs + env];
@@ -75,10 +68,5 @@ fn place(
         b = vec4f(ground.x, 0.5, ground.y, 0.12);
     }
     let surface = capsule_surface(unit.xyz, unit.w, a, b);
-    return Corner(view.clip * vec4f(surface.at, 1.0), surface.at, surface.normal, colour);
-}
-
-@fragment
-fn paint(corner: Corner) -> @location(0) vec4f {
-    return shade(corner.at, normalize(corner.normal), corner.colour);
+    return seen(surface.at, surface.normal, colour);
 }

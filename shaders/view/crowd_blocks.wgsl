@@ -4,7 +4,7 @@
 
 #import crowd
 #import layout
-#import light
+#import solid
 
 @group(2) @binding(0) var<storage, read> boxes: array<f32>;
 @group(2) @binding(1) var<uniform> crowd: Crowd;
@@ -12,13 +12,6 @@
 const COLOUR = vec3f(0.42, 0.34, 0.30);
 // m
 const HEIGHT = 0.35;
-
-struct Corner {
-    @builtin(position) clip: vec4f,
-    @location(0) at: vec3f,
-    @location(1) normal: vec3f,
-    @location(2) colour: vec3f,
-}
 
 @vertex
 fn place(
@@ -37,10 +30,5 @@ fn place(
     let half = vec2f(boxes[first + HALF_X * crowd.count], boxes[first + HALF_Z * crowd.count]);
     let across = centre + half * corner.xz;
     let at = vec3f(across.x, 0.5 * height * (1.0 + corner.y), across.y);
-    return Corner(view.clip * vec4f(at, 1.0), at, normal, COLOUR * (0.75 + 0.5 * own));
-}
-
-@fragment
-fn paint(corner: Corner) -> @location(0) vec4f {
-    return shade(corner.at, normalize(corner.normal), corner.colour);
+    return seen(at, normal, COLOUR * (0.75 + 0.5 * own));
 }

@@ -1,4 +1,5 @@
-// The ground: a square around the camera that ends behind the haze, with a line every metre and a bolder one every five.
+// The ground: a square around the camera that ends behind the haze, with a line every metre and a
+// bolder one every five.
 
 #import light
 

@@ -10,6 +10,7 @@ use crate::world::Task;
 use anyhow::{Context, Result, anyhow};
 use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use eframe::{NativeOptions, egui};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
@@ -129,12 +130,18 @@ fn open(
             over,
         }) as Box<dyn eframe::App>)
     };
-    let closed = eframe::run_native(title, options, Box::new(create));
+    // wgpu panics when a surface cannot be had, as of a device too busy to answer in time: that is
+    // the end of the window, and not of a training beside it.
+    let shown = AssertUnwindSafe(|| eframe::run_native(title, options, Box::new(create)));
+    let closed = catch_unwind(shown);
     if let Some(why) = kept.get() {
         return Err(anyhow!(
             "the GPU was lost: {why}; start again, or draw to files with `footwork render`"
         ));
     }
+    let Ok(closed) = closed else {
+        return Err(anyhow!("the window could not be drawn any more"));
+    };
     closed.map_err(|error| match error {
         eframe::Error::AppCreation(error) => anyhow!("{error}"),
         eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => anyhow!(

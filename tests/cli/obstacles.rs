@@ -86,6 +86,8 @@ fn obstacles_that_make_no_sense_are_refused() {
         ("side_max = 0.2", &["obstacles.side_max is 0.2"]),
         ("speed = -0.5", &["obstacles.speed is -0.5"]),
         ("speed = nan", &["obstacles.speed is NaN"]),
+        ("edge = -0.1", &["obstacles.edge is -0.1"]),
+        ("look_back = 11", &["obstacles.look_back is 11"]),
         (
             "square = 2",
             &["obstacles.square is 2", "start cannot be kept clear"],

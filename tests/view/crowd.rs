@@ -5,14 +5,12 @@ use footwork::playback::Shown;
 use footwork::view::body::Body;
 use footwork::view::scene::Block;
 use footwork::view::{Camera, Crowd, Renderer, Scene};
-use footwork::world::{self, Obstacles, Plane, Setup, Task};
+use footwork::world::{self, Obstacles, Plane, Setup, Task, World};
 use glam::Vec3;
 
 const SIZE: [u32; 2] = [240, 160];
 
-/// A crowd of one must look like its only character, wherever its state is kept.
-fn one_of_a_crowd(device: Device) {
-    let task = Task::Plane(Plane::default());
+fn one(device: &Device, task: Task) -> Box<dyn World> {
     let setup = Setup {
         task,
         envs: 1,
@@ -20,7 +18,13 @@ fn one_of_a_crowd(device: Device) {
         seed: 5,
         level: 9,
     };
-    let mut world = world::open(&device, &DATABASE, &setup);
+    world::open(device, &DATABASE, &setup)
+}
+
+/// A crowd of one must look like its only character, wherever its state is kept.
+fn one_of_a_crowd(device: Device) {
+    let task = Task::Plane(Plane::default());
+    let mut world = one(&device, task);
     let mut renderer = Renderer::new(&gpu());
     let watched = world.watch().unwrap();
     let crowd = Crowd::new(&renderer, &DATABASE, watched, &task, 1);
@@ -67,14 +71,7 @@ fn one_of_a_crowd(device: Device) {
 /// Its obstacles must lie where a single world's would be drawn.
 fn obstacles_of_a_crowd(device: Device) {
     let task = Task::Obstacles(Obstacles::FAST);
-    let setup = Setup {
-        task,
-        envs: 1,
-        horizon: 4,
-        seed: 5,
-        level: 9,
-    };
-    let mut world = world::open(&device, &DATABASE, &setup);
+    let mut world = one(&device, task);
     let mut renderer = Renderer::new(&gpu());
     let watched = world.watch().unwrap();
     let crowd = Crowd::new(&renderer, &DATABASE, watched, &task, 1);
