@@ -21,6 +21,8 @@
 //! - [`kernels`]: one file a shader: parameters, launch, twin;
 //! - [`search`]: the exact search's index, and the search on the CPU;
 //! - [`world`]: a batch of worlds, by shaders or by twins;
+//! - [`body`]: articulated rigid bodies with contact: models, and the physics of one world;
+//! - [`simulation`]: a batch of physical worlds, by shaders or by their twins' functions;
 //! - [`playback`]: the whole body of a walk: stitching, foot locking, and how good it looks;
 //! - [`ppo`]: policy, rollout, update;
 //! - [`train`]: configuration, run folder, checkpoints, the loop, evaluation;
@@ -31,6 +33,7 @@
 //! - [`store`] and [`tensors`]: files and tensors as plain arrays.
 
 pub mod benchmark;
+pub mod body;
 pub mod gpu;
 pub mod kernels;
 pub mod motion;
@@ -39,6 +42,7 @@ pub mod playback;
 pub mod ppo;
 pub mod report;
 pub mod search;
+pub mod simulation;
 pub mod store;
 pub mod tensors;
 pub mod train;

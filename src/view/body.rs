@@ -8,9 +8,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Quat, Vec3};
 
 /// Left limbs are blue and right ones orange: a mirrored or crossed leg shows at once.
-const LEFT: Colour = [0.10, 0.30, 0.68];
-const RIGHT: Colour = [0.85, 0.30, 0.06];
-const TRUNK: Colour = [0.62, 0.64, 0.68];
+pub(super) const LEFT: Colour = [0.10, 0.30, 0.68];
+pub(super) const RIGHT: Colour = [0.85, 0.30, 0.06];
+pub(super) const TRUNK: Colour = [0.62, 0.64, 0.68];
 /// From the top of the thigh to the ankle of the person whose radii are given here, m.
 const LEG: f32 = 0.83;
 

@@ -11,6 +11,8 @@ pub mod painter;
 pub mod renderer;
 pub mod rollout;
 pub mod scene;
+pub mod shapes;
+pub mod strip;
 
 pub use camera::Camera;
 pub use canvas::Canvas;

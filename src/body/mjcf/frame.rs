@@ -1,0 +1,118 @@
+//! Where an element puts its frame: `pos`, and a turn in one of five ways.
+
+use super::element::Element;
+use super::error::Result;
+use super::settings::Settings;
+use glam::{DMat3, DQuat, DVec3};
+use std::ops::Mul;
+
+/// Shorter vectors point nowhere.
+const SHORTEST: f64 = 1e-9;
+
+/// Seen from the frame around it.
+#[derive(Clone, Copy, Default, PartialEq)]
+pub struct Frame {
+    pub place: DVec3,
+    pub turn: DQuat,
+}
+
+impl Mul for Frame {
+    type Output = Frame;
+    fn mul(self, inner: Frame) -> Frame {
+        Frame {
+            place: self.place + self.turn * inner.place,
+            turn: (self.turn * inner.turn).normalize(),
+        }
+    }
+}
+
+impl Frame {
+    pub fn read(element: &Element, settings: &Settings) -> Result<Frame> {
+        let place = element.numbers("pos")?.unwrap_or_default();
+        Ok(Frame {
+            place: DVec3::from_array(place),
+            turn: turn(element, settings)?.unwrap_or(DQuat::IDENTITY),
+        })
+    }
+}
+
+/// The turn that is given, if one is: the element's own way takes the place of a class's.
+pub fn turn(element: &Element, settings: &Settings) -> Result<Option<DQuat>> {
+    element.innermost(|layer| one_turn(layer, settings))
+}
+
+/// What one layer says.
+fn one_turn(element: &Element, settings: &Settings) -> Result<Option<DQuat>> {
+    let ways = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
+    let mut given = ways.into_iter().filter(|way| element.word(way).is_some());
+    let way = given.next();
+    if let Some(second) = given.next() {
+        return Err(element.wrong(second, "the orientation is given twice; keep one"));
+    }
+    let Some(way) = way else { return Ok(None) };
+    let turn = match way {
+        "quat" => quat(element),
+        "axisangle" => axisangle(element, settings),
+        "xyaxes" => xyaxes(element),
+        "zaxis" => zaxis(element),
+        _ => euler(element, settings),
+    };
+    turn.map(Some)
+}
+
+fn quat(element: &Element) -> Result<DQuat> {
+    let [w, x, y, z] = element.numbers("quat")?.unwrap_or_default();
+    let quat = DQuat::from_xyzw(x, y, z, w);
+    match quat.length() > SHORTEST {
+        true => Ok(quat.normalize()),
+        false => Err(element.wrong("quat", "this quaternion is zero")),
+    }
+}
+
+fn axisangle(element: &Element, settings: &Settings) -> Result<DQuat> {
+    let [x, y, z, angle] = element.numbers("axisangle")?.unwrap_or_default();
+    let axis = unit(element, "axisangle", DVec3::new(x, y, z))?;
+    Ok(DQuat::from_axis_angle(axis, angle * settings.angle))
+}
+
+fn xyaxes(element: &Element) -> Result<DQuat> {
+    let [a, b, c, d, e, f] = element.numbers("xyaxes")?.unwrap_or_default();
+    let x = unit(element, "xyaxes", DVec3::new(a, b, c))?;
+    let y = DVec3::new(d, e, f);
+    let y = unit(element, "xyaxes", y - x * x.dot(y))?;
+    let axes = DMat3::from_cols(x, y, x.cross(y));
+    Ok(DQuat::from_mat3(&axes).normalize())
+}
+
+fn zaxis(element: &Element) -> Result<DQuat> {
+    let axis = element.numbers("zaxis")?.unwrap_or_default();
+    let axis = unit(element, "zaxis", DVec3::from_array(axis))?;
+    Ok(from_z(axis))
+}
+
+/// About x, then about the y and the z that this has turned.
+fn euler(element: &Element, settings: &Settings) -> Result<DQuat> {
+    let angles = element.numbers::<3>("euler")?.unwrap_or_default();
+    let [x, y, z] = angles.map(|angle| angle * settings.angle);
+    let turn = DQuat::from_rotation_x(x) * DQuat::from_rotation_y(y) * DQuat::from_rotation_z(z);
+    Ok(turn.normalize())
+}
+
+pub fn unit(element: &Element, attribute: &str, vector: DVec3) -> Result<DVec3> {
+    match vector.length() > SHORTEST {
+        true => Ok(vector.normalize()),
+        false => Err(element.wrong(attribute, "this points in no direction")),
+    }
+}
+
+/// The smallest turn that takes z to a unit vector.
+pub fn from_z(to: DVec3) -> DQuat {
+    let axis = DVec3::Z.cross(to);
+    let (sine, cosine) = (axis.length(), to.z);
+    let axis = if sine > SHORTEST {
+        axis / sine
+    } else {
+        DVec3::X
+    };
+    DQuat::from_axis_angle(axis, sine.atan2(cosine))
+}

@@ -1,0 +1,195 @@
+//! Film strips of a motion: as it was recorded, and as the simulated body does it when its drives are
+//! given the recorded angles.
+
+use super::camera::Camera;
+use super::canvas::Canvas;
+use super::film;
+use super::renderer::Renderer;
+use super::scene::Scene;
+use super::shapes::{self, Look};
+use crate::body::kinematics::kinematics;
+use crate::body::model::Model;
+use crate::body::motion::{BodyMotion, targets};
+use crate::body::physics::{Physics, STEP_RATE, SUBSTEPS, Settings, State};
+use crate::body::pose::Pose;
+use crate::body::spatial::Spatial;
+use crate::gpu::Gpu;
+use anyhow::{Context, Result};
+use glam::Vec3;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Of a picture of the strip, and between two, pixels.
+const SIZE: [u32; 2] = [280, 340];
+const GAP: usize = 4;
+const PICTURES: usize = 7;
+/// Nothing balances a body whose drives follow angles: so long after its start it lies, s.
+const FALL: f32 = 1.5;
+/// From the front of the body to where the camera stands, rad.
+const YAW: f32 = 1.1;
+/// From the camera to a single body, m, and how much further for each metre to either side.
+const NEAR: f32 = 3.9;
+const WIDE: f32 = 2.4;
+/// From the simulated body to the recorded one: to the right of the picture, and away, m.
+const ASIDE: [f32; 2] = [0.9, 0.6];
+
+/// Writes two film strips into a folder: the motion replayed for its whole length, and the body
+/// driven to its angles from its first state on, before the recorded one. Returns the files.
+///
+/// # Errors
+/// The folder cannot be made, a file cannot be written, or the GPU was lost.
+pub fn strips(
+    gpu: &Gpu,
+    model: &Arc<Model>,
+    motion: &BodyMotion,
+    folder: &Path,
+) -> Result<[PathBuf; 2]> {
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    let mut strip = Strip::new(gpu, model, motion);
+    let [replayed, driven] =
+        ["replayed", "driven"].map(|what| folder.join(format!("{}-{what}.png", motion.name)));
+    strip.write(&replayed, strip.replayed())?;
+    strip.write(&driven, strip.driven())?;
+    Ok([replayed, driven])
+}
+
+/// What one picture shows: a scene about a point, and how much there is to either side, m.
+struct Shot {
+    scene: Scene,
+    focus: Vec3,
+    side: f32,
+}
+
+struct Strip<'a> {
+    model: &'a Arc<Model>,
+    motion: &'a BodyMotion,
+    renderer: Renderer,
+    canvas: Canvas,
+    camera: Camera,
+}
+
+impl<'a> Strip<'a> {
+    /// Seen from beside the front of the body at its start.
+    fn new(gpu: &Gpu, model: &'a Arc<Model>, motion: &'a BodyMotion) -> Strip<'a> {
+        let front = shapes::seen(poses(model, motion.q(0))[0].turn * Vec3::X);
+        Strip {
+            model,
+            motion,
+            renderer: Renderer::new(gpu),
+            canvas: Canvas::new(&gpu.setup.device, SIZE),
+            camera: Camera {
+                yaw: front.x.atan2(front.z) + YAW,
+                ..Camera::default()
+            },
+        }
+    }
+
+    fn replayed(&self) -> Vec<Shot> {
+        let shots = times(self.motion.seconds()).map(|time| {
+            let recorded = self.recorded(time);
+            let mut scene = Scene::default();
+            shapes::draw(&mut scene, self.model, &recorded, Vec3::ZERO, Look::Solid);
+            Shot {
+                scene,
+                focus: shapes::seen(recorded[0].place),
+                side: 0.0,
+            }
+        });
+        shots.collect()
+    }
+
+    fn driven(&self) -> Vec<Shot> {
+        let (sin, cos) = self.camera.yaw.sin_cos();
+        let aside = Vec3::new(cos, 0.0, -sin) * ASIDE[0] - Vec3::new(sin, 0.0, cos) * ASIDE[1];
+        let mut body = Driven::new(self.model, self.motion);
+        let shots = times(FALL.min(self.motion.seconds())).map(|time| {
+            body.until(time);
+            let (simulated, recorded) = (poses(self.model, &body.state.q), self.recorded(time));
+            let [one, other] = [&simulated, &recorded].map(|poses| shapes::seen(poses[0].place));
+            let between = other + aside - one;
+            let mut scene = Scene::default();
+            shapes::draw(&mut scene, self.model, &recorded, aside, Look::Ghost);
+            shapes::draw(&mut scene, self.model, &simulated, Vec3::ZERO, Look::Solid);
+            Shot {
+                scene,
+                focus: one + between / 2.0,
+                side: between.length() / 2.0,
+            }
+        });
+        shots.collect()
+    }
+
+    fn recorded(&self, time: f32) -> Vec<Pose> {
+        poses(self.model, &self.motion.at(self.model, time).0)
+    }
+
+    /// One picture beside the other.
+    fn write(&mut self, path: &Path, shots: Vec<Shot>) -> Result<()> {
+        let [width, height] = SIZE.map(|side| side as usize);
+        let whole = PICTURES * (width + GAP) - GAP;
+        let mut strip = vec![255; 3 * whole * height];
+        for (place, shot) in shots.iter().enumerate() {
+            self.camera.follow([shot.focus.x, shot.focus.z], 1.0);
+            self.camera.distance = NEAR + WIDE * shot.side;
+            self.renderer
+                .draw(&shot.scene, None, &self.camera, &self.canvas);
+            let picture = self
+                .canvas
+                .read(&self.renderer.device, &self.renderer.queue)?;
+            let rows = strip.chunks_exact_mut(3 * whole);
+            for (row, pixels) in rows.zip(picture.chunks_exact(3 * width)) {
+                row[3 * place * (width + GAP)..][..3 * width].copy_from_slice(pixels);
+            }
+        }
+        film::png(path, [whole as u32, SIZE[1]], &strip)
+    }
+}
+
+/// The simulated body, its drives' targets the recorded angles.
+struct Driven<'a> {
+    motion: &'a BodyMotion,
+    physics: Physics,
+    state: State,
+    steps: usize,
+}
+
+impl<'a> Driven<'a> {
+    fn new(model: &Arc<Model>, motion: &'a BodyMotion) -> Driven<'a> {
+        let (q, v) = motion.at(model, 0.0);
+        Driven {
+            motion,
+            physics: Physics::new(model.clone(), Settings::training(model)),
+            state: State {
+                q,
+                v,
+                ..State::new(model)
+            },
+            steps: 0,
+        }
+    }
+
+    /// An action asks for the angles at its end.
+    fn until(&mut self, time: f32) {
+        let model = self.physics.model.clone();
+        while (self.steps as f32) < (time * STEP_RATE).round() {
+            let end = (self.steps / SUBSTEPS + 1) * SUBSTEPS;
+            let (wanted, _) = self.motion.at(&model, end as f32 / STEP_RATE);
+            self.physics
+                .step(&mut self.state, &targets(&model, &wanted), &[]);
+            self.steps += 1;
+        }
+    }
+}
+
+/// The times of a strip's pictures, s.
+fn times(end: f32) -> impl Iterator<Item = f32> {
+    (0..PICTURES).map(move |picture| end * picture as f32 / (PICTURES - 1) as f32)
+}
+
+fn poses(model: &Model, q: &[f32]) -> Vec<Pose> {
+    let mut poses = vec![Pose::default(); model.bodies.len()];
+    let mut axes = vec![Spatial::ZERO; model.velocities()];
+    kinematics(model, q, &mut poses, &mut axes);
+    poses
+}

@@ -1,0 +1,11 @@
+//! The simulated body: the model reader, dynamics, contacts and the solver against MuJoCo (golden files
+//! made by `tests/oracle`) and against mechanics, and motion put into the body.
+
+mod collide;
+mod contacts;
+mod dynamics;
+mod golden;
+mod laws;
+mod model;
+mod retarget;
+mod statistics;
