@@ -5,9 +5,11 @@
 //! The tests need a software Vulkan adapter (lavapipe) and fail without one.
 
 mod act;
+mod bodies;
 mod ceiling;
 mod checked;
 mod collide;
+mod contact;
 mod gae;
 mod geometry;
 mod ground;

@@ -1,0 +1,58 @@
+// A world's touches, the twin of src/body/collide.rs. The importing shader binds `touches`, `keys` and
+// `params` with `envs` and `slots`.
+
+const TOUCH = 10u; // place, normal, tangent, distance
+const MOST = 8u;   // points of a pair
+
+const PLANE = 0u;
+const SPHERE = 1u;
+const CAPSULE = 2u;
+const BOX = 3u;
+
+// A geom in the world.
+struct Placed {
+    kind: u32,
+    size: vec3f, // radius and half length, or half sizes
+    place: vec3f,
+    turn: mat3x3f,
+}
+
+var<private> env: u32;
+var<private> pair: u32;
+var<private> kept: u32;
+var<private> overflow: u32;
+
+fn sign_of(value: f32) -> f32 { return select(1.0, -1.0, value < 0.0); }
+
+// The part of a vector across a normal, as a unit vector.
+fn across(normal: vec3f, vector: vec3f) -> vec3f {
+    let part = vector - normal * dot(normal, vector);
+    let long = length(part);
+    return select(vec3f(1.0, 0.0, 0.0), part / long, long > 0.0);
+}
+
+fn any_across(normal: vec3f) -> vec3f {
+    return across(normal, select(vec3f(0.0, 0.0, 1.0), vec3f(0.0, 1.0, 0.0), abs(normal.y) < 0.5));
+}
+
+fn write_vector(field: u32, value: vec3f) {
+    let at = (kept * TOUCH + field) * params.envs + env;
+    touches[at] = value.x;
+    touches[at + params.envs] = value.y;
+    touches[at + 2u * params.envs] = value.z;
+}
+
+// Its number, less than MOST, tells it from the others of the pair, from step to step.
+fn add_touch(number: u32, place: vec3f, normal: vec3f, tangent: vec3f, distance: f32) {
+    if (distance >= 0.0) { return; }
+    if (kept == params.slots) {
+        overflow++;
+        return;
+    }
+    write_vector(0u, place);
+    write_vector(3u, normal);
+    write_vector(6u, tangent);
+    touches[(kept * TOUCH + 9u) * params.envs + env] = distance;
+    keys[kept * params.envs + env] = pair * MOST + number;
+    kept++;
+}

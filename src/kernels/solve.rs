@@ -1,0 +1,178 @@
+//! Projected Gauss-Seidel over limits and contacts, then a step forward. Shader:
+//! `shaders/body/solve.wgsl`.
+
+use super::articulate::{Sections, read, write};
+use super::columns::{gather, scatter};
+use super::constrain::{CONSTRAINT, rows as rows_of};
+use crate::body::constrain::{Contact, Limit};
+use crate::body::physics::{Physics, State};
+use crate::gpu::kernel::groups;
+use crate::gpu::shader::constrain::constants as at;
+use crate::gpu::{Buffer, Gpu, shader};
+
+crate::shader_params! {
+    pub struct Params for solve {
+        pub envs: u32,
+        /// Seconds of a step.
+        pub dt: f32,
+    }
+}
+
+/// Of no contact.
+pub const NO_KEY: u32 = u32::MAX;
+
+/// Numbers that an environment remembers of a step's forces.
+pub fn warm(slots: usize, joints: usize) -> usize {
+    5 * slots + joints
+}
+
+#[allow(clippy::too_many_arguments)]
+pub fn launch(
+    gpu: &Gpu,
+    tables: &Buffer<u32>,
+    state: &Buffer<f32>,
+    dynamics: &Buffer<f32>,
+    rows: &Buffer<f32>,
+    constraints: &Buffer<f32>,
+    keys: &Buffer<u32>,
+    counts: &Buffer<u32>,
+    warm: &Buffer<f32>,
+    params: &Params,
+) {
+    gpu.launch(
+        &shader::SOLVE,
+        groups(&shader::SOLVE, params.envs as usize),
+        &[
+            tables,
+            state,
+            dynamics,
+            rows,
+            constraints,
+            keys,
+            counts,
+            warm,
+        ],
+        params,
+    );
+}
+
+#[allow(clippy::too_many_arguments)]
+pub fn twin(
+    physics: &mut Physics,
+    state: &mut [f32],
+    dynamics: &[f32],
+    rows: &[f32],
+    constraints: &[f32],
+    keys: &[u32],
+    counts: &[u32],
+    warm: &mut [f32],
+    params: &Params,
+) {
+    let (model, envs) = (physics.model.clone(), params.envs as usize);
+    let (slots, joints) = (physics.settings.slots, model.joints.len());
+    let smooth = Sections::of(&model).smooth;
+    let mut world = State::new(&model);
+    let mut numbers = [0.0; CONSTRAINT];
+    for env in 0..envs {
+        read(&model, state, envs, env, &mut world);
+        gather(dynamics, envs, env, smooth, &mut physics.smooth);
+        remember(warm, envs, env, slots, &mut world);
+        physics.rows.clear();
+        physics.limits.clear();
+        physics.contacts.clear();
+        physics.found.keys.clear();
+        for joint in 0..joints {
+            gather(
+                constraints,
+                envs,
+                env,
+                (slots + joint) * CONSTRAINT,
+                &mut numbers,
+            );
+            if numbers[at::ACTIVE as usize] == 0.0 {
+                continue;
+            }
+            let row = take_row(physics, rows, envs, env, slots, 3 * slots + joint);
+            physics.limits.push(Limit {
+                joint,
+                row,
+                target: numbers[at::TARGET as usize],
+                softness: numbers[at::SOFTNESS as usize],
+                force: world.limits[joint],
+            });
+        }
+        for slot in 0..counts[env] as usize {
+            gather(constraints, envs, env, slot * CONSTRAINT, &mut numbers);
+            let key = keys[slot * envs + env];
+            let row = take_row(physics, rows, envs, env, slots, 3 * slot);
+            take_row(physics, rows, envs, env, slots, 3 * slot + 1);
+            take_row(physics, rows, envs, env, slots, 3 * slot + 2);
+            physics.found.keys.push(key);
+            physics.contacts.push(Contact {
+                row,
+                friction: numbers[at::FRICTION as usize],
+                target: [numbers[0], numbers[1], numbers[2]],
+                softness: numbers[at::SOFTNESS as usize],
+                forces: world.remembered(key),
+            });
+        }
+        physics.relax();
+        physics.advance(&mut world);
+        write(&model, state, envs, env, &world);
+        record(&world, warm, envs, env, slots);
+    }
+}
+
+/// Forces of the step before.
+fn remember(warm: &[f32], envs: usize, env: usize, slots: usize, world: &mut State) {
+    world.keys.clear();
+    world.forces.clear();
+    for slot in 0..slots {
+        let key = warm[slot * envs + env].to_bits();
+        if key != NO_KEY {
+            let mut forces = [0.0; 4];
+            gather(warm, envs, env, slots + 4 * slot, &mut forces);
+            world.keys.push(key);
+            world.forces.push(forces);
+        }
+    }
+    gather(warm, envs, env, 5 * slots, &mut world.limits);
+}
+
+/// Forces of this step.
+fn record(world: &State, warm: &mut [f32], envs: usize, env: usize, slots: usize) {
+    for slot in 0..slots {
+        let key = world.keys.get(slot).copied().unwrap_or(NO_KEY);
+        let forces = world.forces.get(slot).copied().unwrap_or_default();
+        scatter(warm, envs, env, slot, &[f32::from_bits(key)]);
+        scatter(warm, envs, env, slots + 4 * slot, &forces);
+    }
+    scatter(warm, envs, env, 5 * slots, &world.limits);
+}
+
+/// Reads a row, and gives its place among the world's.
+fn take_row(
+    physics: &mut Physics,
+    rows: &[f32],
+    envs: usize,
+    env: usize,
+    slots: usize,
+    from: usize,
+) -> usize {
+    let (quads, all) = (
+        physics.model.dofs.len().div_ceil(4),
+        rows_of(&physics.model, slots),
+    );
+    let row = physics.rows.add();
+    let stride = physics.rows.stride;
+    physics.rows.response.resize((row + 1) * stride, [0.0; 8]);
+    let parts = [&mut physics.rows.jacobian, &mut physics.rows.response];
+    for (part, to) in parts.into_iter().enumerate() {
+        let to = to[row * stride..][..stride].as_flattened_mut();
+        for (quad, numbers) in to[..4 * quads].chunks_exact_mut(4).enumerate() {
+            let place = (((part * all + from) * quads + quad) * envs + env) * 4;
+            numbers.copy_from_slice(&rows[place..place + 4]);
+        }
+    }
+    row
+}
