@@ -7,6 +7,7 @@ mod eval;
 mod play;
 mod render;
 mod run;
+mod sim;
 mod train;
 
 use anyhow::Result;
@@ -36,6 +37,8 @@ enum Command {
     Play(play::Play),
     /// Draw what a trained policy does, to files
     Render(render::Render),
+    /// Let simulated bodies move by random actions: throughput and statistics
+    Sim(sim::Sim),
     /// Measure what each device makes of each stage
     Bench(bench::Bench),
     /// Import, synthesise and inspect motion
@@ -55,6 +58,7 @@ pub fn run() -> Result<()> {
         Command::Eval(eval) => eval.run(),
         Command::Play(play) => play.run(),
         Command::Render(render) => render.run(),
+        Command::Sim(sim) => sim.run(),
         Command::Bench(bench) => bench.run(),
         Command::Data(data) => data.run(),
     }

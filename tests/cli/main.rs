@@ -9,6 +9,7 @@ mod obstacles;
 mod places;
 mod refused;
 mod render;
+mod sim;
 #[cfg(unix)]
 mod stopped;
 mod train;

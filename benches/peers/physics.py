@@ -1,0 +1,73 @@
+"""Throughput of MuJoCo's C engine on the humanoid, beside `footwork sim --device cpu`.
+
+physics.py FOOTWORK [--worlds N] [--seconds S] [--threads T] [--model FILE]
+
+Both play random targets for the drives, normal with 0.5 rad deviation, drawn anew 30 times a second, at
+120 steps a second, from standing. MuJoCo rolls out natively on its own threads, with its implicit
+integrator (explicit drives of this stiffness explode at this step) and its default solver; both take turns,
+three times each, and the medians are compared.
+"""
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import time
+from pathlib import Path
+
+import mujoco
+import mujoco.rollout
+import numpy as np
+
+MODEL = Path(__file__).parents[2] / "src" / "body" / "humanoid.xml"
+SUBSTEPS = 4
+
+
+def mujoco_per_s(model, worlds, seconds, threads, rng):
+    steps = int(30 * seconds)
+    ctrl = rng.normal(size=(worlds, steps, model.nu)) * 0.5
+    ctrl = np.repeat(ctrl, SUBSTEPS, axis=1)
+    data = [mujoco.MjData(model) for _ in range(threads)]
+    mujoco.mj_resetData(model, data[0])
+    size = mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)
+    state = np.zeros(size)
+    mujoco.mj_getState(model, data[0], state, mujoco.mjtState.mjSTATE_FULLPHYSICS)
+    begun = time.perf_counter()
+    with mujoco.rollout.Rollout(nthread=threads) as rollout:
+        rollout.rollout(model, data, np.tile(state, (worlds, 1)), ctrl)
+    return worlds * steps / (time.perf_counter() - begun)
+
+
+def footwork_per_s(binary, worlds, seconds, threads):
+    command = [binary, "sim", "--device", "cpu", "--json"]
+    command += ["--worlds", str(worlds), "--seconds", str(seconds)]
+    environment = {**os.environ, "RAYON_NUM_THREADS": str(threads)}
+    output = subprocess.run(command, env=environment, check=True, capture_output=True).stdout
+    return json.loads(output)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("footwork")
+    parser.add_argument("--worlds", type=int, default=256)
+    parser.add_argument("--seconds", type=float, default=10)
+    parser.add_argument("--threads", type=int, default=os.cpu_count())
+    parser.add_argument("--model", default=str(MODEL))
+    arguments = parser.parse_args()
+    model = mujoco.MjModel.from_xml_path(arguments.model)
+    model.opt.timestep = 1 / 120
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    rng = np.random.default_rng(1)
+    size = arguments.worlds, arguments.seconds, arguments.threads
+    theirs, ours = [], []
+    for _ in range(3):
+        theirs.append(mujoco_per_s(model, *size, rng))
+        ours.append(footwork_per_s(arguments.footwork, *size))
+        print(f"MuJoCo {theirs[-1]:.0f}, footwork {ours[-1]['control_steps_per_s']:.0f} control steps/s")
+    their, our = statistics.median(theirs), statistics.median(o["control_steps_per_s"] for o in ours)
+    print(f"{arguments.threads} threads: footwork {our:.0f}, MuJoCo {their:.0f}, ratio {our / their:.2f}")
+
+
+if __name__ == "__main__":
+    main()

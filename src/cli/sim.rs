@@ -1,0 +1,233 @@
+//! `footwork sim`.
+
+use super::Usage;
+use anyhow::Result;
+use clap::{Args, ValueEnum};
+use footwork::body::mjcf;
+use footwork::body::model::Model;
+use footwork::body::motion_library::MotionLibrary;
+use footwork::body::physics::{STEP_RATE, SUBSTEPS, Settings};
+use footwork::body::scenes;
+use footwork::gpu::{Choice, Device, Gpu};
+use footwork::motion::import::ImportOptions;
+use footwork::report::table::table;
+use footwork::simulation::Setup;
+use footwork::view::strip::strips;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Scene {
+    /// One humanoid
+    One,
+    /// Two humanoids face to face
+    Two,
+    /// A humanoid and the box it is to punch
+    Box,
+}
+
+/// Let bodies move by random actions, and see how fast and how soundly they do; or see recorded motion
+/// in the body.
+#[derive(Args)]
+pub struct Sim {
+    /// Worlds side by side
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1024,
+        allow_negative_numbers = true
+    )]
+    worlds: usize,
+    /// Where to simulate
+    #[arg(long, value_enum, default_value = "auto")]
+    device: Choice,
+    /// Simulated seconds of each world
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 4.0,
+        allow_negative_numbers = true
+    )]
+    seconds: f64,
+    /// Who is in a world
+    #[arg(long, value_enum, default_value = "one", conflicts_with = "model")]
+    scene: Scene,
+    /// A model of your own, MJCF, in place of the humanoid
+    #[arg(long, value_name = "FILE")]
+    model: Option<PathBuf>,
+    /// Standard deviation of the drives' targets, rad
+    #[arg(
+        long,
+        value_name = "RAD",
+        default_value_t = 0.5,
+        allow_negative_numbers = true
+    )]
+    deviation: f32,
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    seed: u32,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+    /// In place of random actions: a BVH file, or a folder of them, to put into the body
+    #[arg(long, value_name = "PATH", requires = "pictures", conflicts_with_all = RANDOM)]
+    clip: Option<PathBuf>,
+    /// Folder for two film strips of each clip: replayed, and with the drives following its angles
+    #[arg(long, value_name = "FOLDER", requires = "clip")]
+    pictures: Option<PathBuf>,
+}
+
+/// What only random actions know.
+const RANDOM: [&str; 7] = [
+    "worlds",
+    "device",
+    "seconds",
+    "scene",
+    "deviation",
+    "seed",
+    "json",
+];
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Figures {
+    device: String,
+    threads: usize,
+    worlds: usize,
+    control_steps: u64,
+    control_steps_per_s: f64,
+    /// Simulated seconds in a second.
+    real_time: f64,
+    /// Times that a world broke and was started anew.
+    nan_worlds: u64,
+    /// Of a world in a step.
+    contacts_mean: f64,
+    contacts_max: u32,
+    overflow: u64,
+    /// Of all positions and velocities at the end: equal for equal runs on one device.
+    state_hash: String,
+}
+
+impl Sim {
+    pub fn run(self) -> Result<()> {
+        if let (Some(clip), Some(folder)) = (&self.clip, &self.pictures) {
+            return self.draw(clip, folder);
+        }
+        if self.worlds == 0 || !(self.seconds > 0.0 && self.seconds <= 1e6) {
+            let why = "there is nothing to simulate: --worlds and --seconds must be above zero, and --seconds no more than a million";
+            return Err(Usage(why.into()).into());
+        }
+        if !(0.0..=10.0).contains(&self.deviation) {
+            return Err(Usage("--deviation must lie between 0 and 10 rad".into()).into());
+        }
+        let model = Arc::new(self.load()?);
+        let device = Device::open(self.device)?;
+        let figures = self.measure(model, &device)?;
+        match self.json {
+            true => println!("{}", serde_json::to_string_pretty(&figures)?),
+            false => print!("{}", shown(&figures)),
+        }
+        Ok(())
+    }
+
+    fn draw(&self, clip: &Path, folder: &Path) -> Result<()> {
+        let model = Arc::new(self.load()?);
+        let library = MotionLibrary::load(&[clip], &ImportOptions::default(), &model)?;
+        for note in &library.notes {
+            eprintln!("note: {note}");
+        }
+        let gpu = Gpu::drawing()?;
+        for motion in library.motions() {
+            for file in strips(&gpu, &model, motion, folder)? {
+                println!("{}", file.display());
+            }
+        }
+        Ok(())
+    }
+
+    fn load(&self) -> Result<Model> {
+        Ok(match (&self.model, self.scene) {
+            (Some(file), _) => mjcf::read(file)?,
+            (None, Scene::One) => scenes::one(),
+            (None, Scene::Two) => scenes::two(),
+            (None, Scene::Box) => scenes::punching(),
+        })
+    }
+
+    fn measure(&self, model: Arc<Model>, device: &Device) -> Result<Figures> {
+        let settings = Settings::training(&model);
+        let setup = Setup {
+            envs: self.worlds,
+            settings,
+            seed: self.seed,
+            watched: Vec::new(),
+            model,
+        };
+        let mut simulation = setup.on(device)?;
+        let rate = f64::from(STEP_RATE) / SUBSTEPS as f64;
+        let steps = (self.seconds * rate).ceil() as u64;
+        let line = ProgressBar::new(steps).with_style(ProgressStyle::with_template(
+            "{elapsed} {wide_bar} {pos}/{len} actions",
+        )?);
+        // The first action compiles shaders.
+        simulation.explore(self.deviation);
+        simulation.step();
+        simulation.tallies()?;
+        let begun = Instant::now();
+        for _ in 1..steps {
+            simulation.explore(self.deviation);
+            simulation.step();
+            line.inc(1);
+        }
+        let tallies = simulation.tallies()?;
+        let seconds = begun.elapsed().as_secs_f64();
+        line.finish_and_clear();
+        let actions = (steps - 1) * self.worlds as u64;
+        let state = simulation.state()?;
+        let per_s = actions as f64 / seconds;
+        Ok(Figures {
+            device: device.name(),
+            threads: rayon::current_num_threads(),
+            worlds: self.worlds,
+            control_steps: steps * self.worlds as u64,
+            control_steps_per_s: per_s,
+            real_time: per_s / rate,
+            nan_worlds: tallies.broken,
+            contacts_mean: tallies.contacts as f64
+                / (steps * self.worlds as u64 * SUBSTEPS as u64) as f64,
+            contacts_max: tallies.most_contacts,
+            overflow: tallies.overflow,
+            state_hash: format!("{:08x}", crc32fast::hash(bytemuck::cast_slice(&state))),
+        })
+    }
+}
+
+fn shown(figures: &Figures) -> String {
+    let rows = [
+        ("device", figures.device.clone()),
+        ("worlds", figures.worlds.to_string()),
+        ("control steps", figures.control_steps.to_string()),
+        (
+            "control steps a second",
+            format!("{:.0}", figures.control_steps_per_s),
+        ),
+        (
+            "simulated seconds in a second",
+            format!("{:.0}", figures.real_time),
+        ),
+        ("worlds that broke", figures.nan_worlds.to_string()),
+        (
+            "contacts, mean of a step",
+            format!("{:.2}", figures.contacts_mean),
+        ),
+        ("contacts, most of a step", figures.contacts_max.to_string()),
+        ("contacts without room", figures.overflow.to_string()),
+        ("hash of the final state", figures.state_hash.clone()),
+    ];
+    let rows = rows
+        .into_iter()
+        .map(|(what, value)| vec![what.to_string(), value]);
+    table(&["", ""], &rows.collect::<Vec<_>>())
+}

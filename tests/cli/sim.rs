@@ -1,0 +1,124 @@
+//! `footwork sim`.
+
+use super::Place;
+use serde_json::Value;
+
+fn figures(place: &Place, words: &str) -> Value {
+    let told = place.done(&format!("sim --json {words}"));
+    serde_json::from_str(&told.out).unwrap_or_else(|error| panic!("{error}: {told:?}"))
+}
+
+#[test]
+fn random_actions_are_told_in_figures() {
+    let place = Place::new();
+    for device in ["cpu", "lavapipe"] {
+        let told = figures(
+            &place,
+            &format!("--worlds 16 --seconds 1 --device {device}"),
+        );
+        assert_eq!(told["worlds"], 16);
+        assert_eq!(told["control_steps"], 16 * 30);
+        assert_eq!(told["nan_worlds"], 0);
+        assert_eq!(told["overflow"], 0);
+        assert!(told["control_steps_per_s"].as_f64().unwrap() > 0.0);
+        // Within a second it falls.
+        let mean = told["contacts_mean"].as_f64().unwrap();
+        let most = told["contacts_max"].as_u64().unwrap();
+        assert!(
+            (0.5..10.0).contains(&mean) && (4..=16).contains(&most),
+            "{told}"
+        );
+    }
+}
+
+#[test]
+fn equal_runs_end_in_equal_states() {
+    let place = Place::new();
+    let hash = |words: &str| {
+        let words = format!("--worlds 8 --seconds 0.5 --device cpu {words}");
+        figures(&place, &words)["state_hash"].clone()
+    };
+    assert_eq!(hash("--seed 7"), hash("--seed 7"));
+    assert_ne!(hash("--seed 7"), hash("--seed 8"));
+    assert_ne!(hash("--scene one"), hash("--scene two"));
+}
+
+#[test]
+fn a_model_of_ones_own_is_simulated() {
+    let place = Place::new();
+    place.write("ball.xml", BALL);
+    let told = figures(
+        &place,
+        "--model ball.xml --worlds 3 --seconds 2 --device cpu",
+    );
+    // It falls 0.1 m, and then lies.
+    let mean = told["contacts_mean"].as_f64().unwrap();
+    assert!((0.8..1.0).contains(&mean), "{told}");
+    assert_eq!(told["contacts_max"], 1);
+}
+
+#[test]
+fn clips_become_film_strips() {
+    let place = Place::new();
+    place.done("data synth --minutes 0.1 --out small.footwork --bvh clips");
+    let told = place.done("sim --clip clips --pictures strips");
+    let files: Vec<&str> = told.out.lines().collect();
+    assert!(
+        !files.is_empty() && files.len().is_multiple_of(2),
+        "{told:?}"
+    );
+    for file in files {
+        let picture = place.path(file);
+        assert!(
+            std::fs::metadata(&picture).unwrap().len() > 50_000,
+            "{file}"
+        );
+    }
+}
+
+#[test]
+fn what_cannot_be_simulated_is_said() {
+    let place = Place::new();
+    place.write("heavy.xml", BALL.replace(r#"mass="1""#, r#"mass="0""#));
+    place.write("ball.xml", BALL);
+    for (words, code, part) in [
+        ("--worlds 0", 2, "nothing to simulate"),
+        ("--worlds -1", 2, "invalid value '-1'"),
+        ("--worlds 99999999999999999999", 2, "invalid value"),
+        ("--seed -1", 2, "invalid value '-1'"),
+        ("--seconds -1", 2, "nothing to simulate"),
+        ("--seconds 0", 2, "nothing to simulate"),
+        ("--seconds nan", 2, "nothing to simulate"),
+        ("--seconds 1e9", 2, "nothing to simulate"),
+        ("--deviation -1", 2, "--deviation must lie between"),
+        ("--deviation inf", 2, "--deviation must lie between"),
+        ("--scene three", 2, "possible values: one, two, box"),
+        ("--device gpux", 2, "similar value exists: 'gpu'"),
+        ("--model gone.xml", 1, "cannot read gone.xml"),
+        ("--model .", 1, "cannot read ."),
+        ("--model heavy.xml", 1, "heavy.xml, line 4"),
+        ("--model ball.xml --scene two", 2, "cannot be used with"),
+        ("--clip gone.bvh", 2, "  --pictures <FOLDER>\n"),
+        ("--pictures strips", 2, "  --clip <PATH>\n"),
+        ("--clip gone.bvh --pictures strips", 1, "gone.bvh"),
+        (
+            "--clip gone.bvh --pictures strips --worlds 2",
+            2,
+            "cannot be used with",
+        ),
+        ("--clip heavy.xml --pictures strips", 1, "heavy.xml"),
+    ] {
+        place.refused(&format!("sim {words}"), code, &[part]);
+    }
+}
+
+const BALL: &str = r#"<mujoco model="ball">
+  <worldbody>
+    <geom name="ground" type="plane" size="1 1 1"/>
+    <body name="ball" pos="0 0 .2">
+      <freejoint name="root"/>
+      <geom name="ball" size=".1" mass="1"/>
+    </body>
+  </worldbody>
+</mujoco>
+"#;
