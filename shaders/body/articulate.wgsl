@@ -7,8 +7,12 @@
 // targets   [driven][envs], of the drives, rad
 // pushes    [bodies * 6][envs], torque and force at the centres of mass
 // poses     [bodies * 7][envs], place and quaternion x y z w, in the world
-// dynamics  [..][envs]: axes [dofs * 6], mass matrix with armature [packed], its factors [packed],
-//           smooth acceleration [dofs], velocities [bodies * 6]; spatial vectors about a tree's origin
+// dynamics  [..][envs]: axes [dofs * 6], factor of the mass matrix with armature and what is implicit in the
+//           drives [packed], mass-weighted smooth acceleration [dofs], velocities [bodies * 6]; spatial
+//           vectors about a tree's origin
+//
+// What is read often on the way is private: software adapters read that many times faster than a buffer, but
+// compile the longer the more of it there is.
 
 #import tables
 #import spatial
@@ -29,26 +33,56 @@ struct Params {
 @group(0) @binding(5) var<storage, read_write> dynamics: array<f32>;
 @group(0) @binding(6) var<uniform> params: Params;
 
-// Most bodies of a tree; Rust refuses more.
-const TREE_MOST = 32u;
+// Of a tree; Rust refuses more.
+const BODIES_MOST = 24u;
+const DOFS_MOST = 48u;
+const PACKED_MOST = 512u;
 
 var<private> env: u32;
 // Of the tree's bodies, counted from its first.
-var<private> velocities: array<Spatial, 32>;
 // Accelerations on the way out, forces on the way in.
-var<private> forces: array<Spatial, 32>;
-var<private> inertias: array<Inertia, 32>;
+var<private> forces: array<Spatial, 24>;
+var<private> inertias: array<Inertia, 24>;
+// Of the tree's degrees of freedom, counted from its first.
+var<private> axes: array<Spatial, 48>;
+var<private> efforts: array<Effort, 48>;
+var<private> bias: array<f32, 48>;
+var<private> acceleration: array<f32, 48>;
+var<private> weighted: array<f32, 48>;
+// Packed, counted from the tree's first entry.
+var<private> factors: array<f32, 512>;
+
+struct Pose {
+    place: vec3f,
+    turn: vec4f,
+}
+
+// Of a drive: force, and armature of its implicit part (src/body/drive.rs).
+struct Effort {
+    force: f32,
+    armature: f32,
+}
+
+struct Tree {
+    body: u32,
+    bodies: u32,
+    dof: u32,
+    dofs: u32,
+    packed: u32,
+    origin: vec3f,
+}
 
 fn q(index: u32) -> f32 { return state[index * params.envs + env]; }
 fn q3(index: u32) -> vec3f { return vec3f(q(index), q(index + 1u), q(index + 2u)); }
 // A quaternion of the state, where w comes first.
 fn q_turn(index: u32) -> vec4f { return normalize(vec4f(q3(index + 1u), q(index))); }
 fn v(dof: u32) -> f32 { return state[(tables[POSITIONS] + dof) * params.envs + env]; }
+
 fn kept(at: u32) -> f32 { return dynamics[at * params.envs + env]; }
 fn keep(at: u32, value: f32) { dynamics[at * params.envs + env] = value; }
 
-fn axis_of(dof: u32) -> Spatial {
-    let at = 6u * dof;
+fn velocity_of(body: u32) -> Spatial {
+    let at = VELOCITIES_AT() + 6u * body;
     return Spatial(vec3f(kept(at), kept(at + 1u), kept(at + 2u)), vec3f(kept(at + 3u), kept(at + 4u), kept(at + 5u)));
 }
 
@@ -73,23 +107,19 @@ fn keep_pose(body: u32, pose: Pose) {
     for (var k = 0u; k < 4u; k++) { poses[(body * 7u + 3u + k) * params.envs + env] = pose.turn[k]; }
 }
 
-struct Pose {
-    place: vec3f,
-    turn: vec4f,
-}
-
-// Where a body is, how it moves and would accelerate unforced; the motions of its degrees of freedom.
-fn outward(body: u32, local: u32, first: u32, origin: vec3f) {
-    let at = tables[BODIES_AT] + body * BODY;
+// Where a body is, how it moves and would accelerate unforced; the motions of its degrees of freedom, and
+// what its drives do.
+fn outward(tree: Tree, local: u32) {
+    let at = tables[BODIES_AT] + (tree.body + local) * BODY;
     var pose = Pose(real3(at + BODY_PLACE), real4(at + BODY_TURN));
     var velocity = Spatial(vec3f(0.0), vec3f(0.0));
-    var acceleration = Spatial(vec3f(0.0), vec3f(0.0, 0.0, GRAVITY));
+    var now = Spatial(vec3f(0.0), vec3f(0.0, 0.0, GRAVITY));
     let parent = tables[at + BODY_PARENT];
     if (parent != NONE) {
         let outer = pose_of(parent);
         pose = Pose(outer.place + rotate(outer.turn, pose.place), turned(outer.turn, pose.turn));
-        velocity = velocities[parent - first];
-        acceleration = forces[parent - first];
+        velocity = velocity_of(parent);
+        now = forces[parent - tree.body];
     }
     let joints = tables[at + BODY_JOINTS];
     for (var j = 0u; j < joints; j++) {
@@ -98,23 +128,32 @@ fn outward(body: u32, local: u32, first: u32, origin: vec3f) {
         let place = real3(joint + JOINT_PLACE);
         let where_q = tables[joint + JOINT_Q];
         let dof = tables[joint + JOINT_V];
-        let anchor = pose.place + rotate(pose.turn, place) - origin;
-        if (kind == FREE) {
-            pose = Pose(q3(where_q), q_turn(where_q + 3u));
-            for (var k = 0u; k < 3u; k++) {
-                var along = vec3f(0.0);
-                along[k] = 1.0;
-                let motion = Spatial(vec3f(0.0), along);
-                keep_spatial(6u * (dof + k), motion);
-                velocity = add(velocity, scaled(motion, v(dof + k)));
-            }
+        let anchor = pose.place + rotate(pose.turn, place) - tree.origin;
+        let shifts = select(0u, 3u, kind == FREE);
+        for (var k = 0u; k < shifts; k++) {
+            var along = vec3f(0.0);
+            along[k] = 1.0;
+            let motion = Spatial(vec3f(0.0), along);
+            axes[dof + k - tree.dof] = motion;
+            efforts[dof + k - tree.dof] = Effort(0.0, 0.0);
+            velocity = add(velocity, scaled(motion, v(dof + k)));
+        }
+        // Of a drive: the angle, or the parts of the rotation vector.
+        var angles = vec3f(0.0);
+        var turn = vec4f(0.0);
+        if (kind == HINGE) {
+            angles = vec3f(q(where_q));
+            turn = from_rotation(real3(joint + JOINT_AXIS) * angles.x);
         } else {
-            var turn = vec4f(0.0);
-            if (kind == BALL) { turn = q_turn(where_q); } else { turn = from_rotation(real3(joint + JOINT_AXIS) * q(where_q)); }
+            turn = q_turn(where_q + shifts);
+            angles = rotation_vector(turn);
+        }
+        if (kind == FREE) {
+            pose = Pose(q3(where_q), turn);
+        } else {
             let after = turned(pose.turn, turn);
             pose = Pose(pose.place + rotate(pose.turn, place) - rotate(after, place), after);
         }
-        let turning = select(dof, dof + 3u, kind == FREE);
         let count = select(3u, 1u, kind == HINGE);
         let arm = select(anchor, vec3f(0.0), kind == FREE);
         let before = velocity;
@@ -124,17 +163,19 @@ fn outward(body: u32, local: u32, first: u32, origin: vec3f) {
             if (kind == HINGE) { own = real3(joint + JOINT_AXIS); }
             let axis = rotate(pose.turn, own);
             let motion = Spatial(axis, cross(arm, axis));
-            keep_spatial(6u * (turning + k), motion);
-            let speed = v(turning + k);
-            acceleration = add(acceleration, scaled(cross_motion(before, motion), speed));
+            let turning = dof + shifts + k;
+            let speed = v(turning);
+            axes[turning - tree.dof] = motion;
+            efforts[turning - tree.dof] = effort(turning, angles[k], speed);
+            now = add(now, scaled(cross_motion(before, motion), speed));
             velocity = add(velocity, scaled(motion, speed));
         }
     }
     pose.turn = normalize(pose.turn);
-    keep_pose(body, pose);
-    velocities[local] = velocity;
-    forces[local] = acceleration;
-    inertias[local] = inertia_of(at, pose, origin);
+    keep_pose(tree.body + local, pose);
+    keep_spatial(VELOCITIES_AT() + 6u * (tree.body + local), velocity);
+    forces[local] = now;
+    inertias[local] = inertia_of(at, pose, tree.origin);
 }
 
 fn inertia_of(at: u32, pose: Pose, origin: vec3f) -> Inertia {
@@ -157,30 +198,48 @@ fn inertia_of(at: u32, pose: Pose, origin: vec3f) -> Inertia {
     return Inertia(mass, mass * c, diagonal, mixed);
 }
 
-// Forces that motion and weight ask for, the mass matrix's rows, and what the parent carries.
-fn inward(body: u32, local: u32, first: u32, origin: vec3f) {
-    let at = tables[BODIES_AT] + body * BODY;
-    let pushed = 6u * body;
+fn effort(dof: u32, angle: f32, speed: f32) -> Effort {
+    let info = tables[DOFS_AT] + dof * DOF;
+    let target_at = tables[info + DOF_TARGET];
+    if (target_at == NONE) { return Effort(0.0, 0.0); }
+    let stiffness = real(info + DOF_STIFFNESS);
+    let damping = real(info + DOF_DAMPING);
+    let wanted = targets[target_at * params.envs + env];
+    return Effort(
+        stiffness * (wanted - angle - params.dt * speed) - damping * speed,
+        params.dt * damping + params.dt * params.dt * stiffness,
+    );
+}
+
+// The force that a body's motion and weight ask for, less what pushes it.
+fn burden(tree: Tree, local: u32) {
+    let own = inertias[local];
+    let velocity = velocity_of(tree.body + local);
+    let moving = cross_force(velocity, momentum(own, velocity));
+    let pushed = 6u * (tree.body + local);
     let torque = push3(pushed);
     let force = push3(pushed + 3u);
-    let pose = pose_of(body);
-    let arm = pose.place + rotate(pose.turn, real3(at + BODY_CENTRE)) - origin;
-    forces[local] = add(forces[local], Spatial(-torque - cross(arm, force), -force));
+    let arm = own.moment / own.mass;
+    let push = Spatial(-torque - cross(arm, force), -force);
+    forces[local] = add(add(momentum(own, forces[local]), moving), push);
+}
+
+fn push3(at: u32) -> vec3f {
+    let e = params.envs;
+    let place = at * e + env;
+    return vec3f(pushes[place], pushes[place + e], pushes[place + 2u * e]);
+}
+
+// Bias forces, and what the parent carries.
+fn inward(tree: Tree, local: u32) {
+    let at = tables[BODIES_AT] + (tree.body + local) * BODY;
     for (var k = 0u; k < tables[at + BODY_DOFS]; k++) {
-        let dof = tables[at + BODY_DOF] + k;
-        let info = tables[DOFS_AT] + dof * DOF;
-        let motion = axis_of(dof);
-        keep(SMOOTH_AT() + dof, -product(motion, forces[local]));
-        let moved = momentum(inertias[local], motion);
-        let row = tables[info + DOF_ROW];
-        for (var i = 0u; i < tables[info + DOF_DEPTH]; i++) {
-            let along = axis_of(tables[tables[COLUMNS_AT] + row + i]);
-            keep(MATRIX_AT() + row + i, product(moved, along) + select(0.0, real(info + DOF_ARMATURE), i == 0u));
-        }
+        let dof = tables[at + BODY_DOF] + k - tree.dof;
+        bias[dof] = product(axes[dof], forces[local]);
     }
     let parent = tables[at + BODY_PARENT];
     if (parent != NONE) {
-        let up = parent - first;
+        let up = parent - tree.body;
         forces[up] = add(forces[up], forces[local]);
         let mine = inertias[local];
         let theirs = inertias[up];
@@ -193,126 +252,106 @@ fn inward(body: u32, local: u32, first: u32, origin: vec3f) {
     }
 }
 
-fn push3(at: u32) -> vec3f {
-    let e = params.envs;
-    let place = at * e + env;
-    return vec3f(pushes[place], pushes[place + e], pushes[place + 2u * e]);
-}
-
-// The drive of a degree of freedom: force, and armature of its implicit part (src/body/drive.rs).
-fn effort(dof: u32) -> vec2f {
-    let info = tables[DOFS_AT] + dof * DOF;
-    let target_at = tables[info + DOF_TARGET];
-    if (target_at == NONE) { return vec2f(0.0); }
-    let joint = tables[JOINTS_AT] + tables[info + DOF_JOINT] * JOINT;
-    let where_q = tables[joint + JOINT_Q];
-    var angle = q(where_q);
-    if (tables[joint + JOINT_KIND] == BALL) {
-        angle = rotation_vector(q_turn(where_q))[dof - tables[joint + JOINT_V]];
-    }
-    let stiffness = real(info + DOF_STIFFNESS);
-    let damping = real(info + DOF_DAMPING);
-    let wanted = targets[target_at * params.envs + env];
-    let speed = v(dof);
-    return vec2f(
-        stiffness * (wanted - angle - params.dt * speed) - damping * speed,
-        params.dt * damping + params.dt * params.dt * stiffness,
-    );
-}
-
-// Most degrees of freedom of a tree; Rust refuses more.
-const DOFS_MOST = 64u;
-var<private> efforts: array<vec2f, 64>;
-var<private> x: array<f32, 64>;
-
-// M = L^T D L of this tree, and x = M^-1 (efforts - bias).
-fn solve_smooth(first: u32, count: u32) {
-    for (var local = 0u; local < count; local++) {
-        let info = tables[DOFS_AT] + (first + local) * DOF;
+// M = L^T L of this tree, and L^-T (efforts - bias). An entry of a degree of freedom's row is what M has
+// there, less what all those beyond it have in common; they stand right behind it.
+fn factorise(tree: Tree) {
+    for (var left = tree.dofs; left > 0u; left--) {
+        let own = left - 1u;
+        let info = tables[DOFS_AT] + (tree.dof + own) * DOF;
+        let body = tables[info + DOF_BODY] - tree.body;
+        let moved = momentum(inertias[body], axes[own]);
         let row = tables[info + DOF_ROW];
         let depth = tables[info + DOF_DEPTH];
+        let last = tables[info + DOF_LAST] - tree.dof;
+        var inverse = 1.0;
         for (var k = 0u; k < depth; k++) {
-            keep(FACTORS_AT() + row + k, kept(MATRIX_AT() + row + k) + select(0.0, efforts[local].y, k == 0u));
-        }
-        x[local] = efforts[local].x + kept(SMOOTH_AT() + first + local);
-    }
-    for (var left = count; left > 0u; left--) {
-        let info = tables[DOFS_AT] + (first + left - 1u) * DOF;
-        let row = tables[info + DOF_ROW];
-        let depth = tables[info + DOF_DEPTH];
-        let inverse = 1.0 / kept(FACTORS_AT() + row);
-        for (var k = 1u; k < depth; k++) {
-            let scaled_by = kept(FACTORS_AT() + row + k) * inverse;
-            let ancestor = tables[tables[COLUMNS_AT] + row + k];
-            let above = tables[tables[DOFS_AT] + ancestor * DOF + DOF_ROW];
-            for (var i = k; i < depth; i++) {
-                let place = FACTORS_AT() + above + i - k;
-                keep(place, kept(place) - scaled_by * kept(FACTORS_AT() + row + i));
+            var entry = product(moved, axes[tables[tables[COLUMNS_AT] + row + k] - tree.dof]);
+            if (k == 0u) { entry += real(info + DOF_ARMATURE) + efforts[own].armature; }
+            for (var beyond = left; beyond < last; beyond++) {
+                let at = above(tree, beyond, depth);
+                entry -= factors[at] * factors[at + k];
             }
-            // L^T x, on the way.
-            x[ancestor - first] -= scaled_by * x[left - 1u];
+            if (k == 0u) { inverse = 1.0 / sqrt(entry); }
+            factors[row + k - tree.packed] = select(entry, 1.0, k == 0u) * inverse;
         }
-        for (var k = 1u; k < depth; k++) {
-            keep(FACTORS_AT() + row + k, kept(FACTORS_AT() + row + k) * inverse);
+        var value = efforts[own].force - bias[own];
+        for (var beyond = left; beyond < last; beyond++) {
+            value -= factors[above(tree, beyond, depth)] * weighted[beyond];
         }
+        weighted[own] = value * inverse;
     }
-    for (var local = 0u; local < count; local++) {
-        let info = tables[DOFS_AT] + (first + local) * DOF;
+}
+
+// Where a degree of freedom's row has the one of the given depth on its way to the root.
+fn above(tree: Tree, dof: u32, depth: u32) -> u32 {
+    return tables[tables[DOFS_AT] + (tree.dof + dof) * DOF + DOF_END] - tree.packed - depth;
+}
+
+// L^-1 of the mass-weighted acceleration.
+fn unweigh(tree: Tree) {
+    for (var own = 0u; own < tree.dofs; own++) {
+        let info = tables[DOFS_AT] + (tree.dof + own) * DOF;
         let row = tables[info + DOF_ROW];
-        var value = x[local] / kept(FACTORS_AT() + row);
+        var value = weighted[own];
         for (var k = 1u; k < tables[info + DOF_DEPTH]; k++) {
-            value -= kept(FACTORS_AT() + row + k) * x[tables[tables[COLUMNS_AT] + row + k] - first];
+            value -= factors[row + k - tree.packed] * acceleration[tables[tables[COLUMNS_AT] + row + k] - tree.dof];
         }
-        x[local] = value;
+        acceleration[own] = value * factors[row - tree.packed];
     }
 }
 
 // Drives that would pass their limit push with just that limit.
-fn limit_drives(first: u32, count: u32) -> bool {
+fn limit_drives(tree: Tree) -> bool {
     var any_over = false;
-    for (var local = 0u; local < count; local++) {
-        let info = tables[DOFS_AT] + (first + local) * DOF;
+    for (var own = 0u; own < tree.dofs; own++) {
+        let info = tables[DOFS_AT] + (tree.dof + own) * DOF;
         if (tables[info + DOF_TARGET] == NONE) { continue; }
-        let torque = efforts[local].x - efforts[local].y * x[local];
+        let torque = efforts[own].force - efforts[own].armature * acceleration[own];
         let most = real(info + DOF_LIMIT);
         if (abs(torque) > most) {
-            efforts[local] = vec2f(select(-most, most, torque > 0.0), 0.0);
+            efforts[own] = Effort(select(-most, most, torque > 0.0), 0.0);
             any_over = true;
         }
     }
     return any_over;
 }
 
-@compute @workgroup_size(64)
-fn articulate(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
-    env = id.x;
-    if (env >= params.envs) { return; }
-    let at = tables[TREES_AT] + group.y * TREE;
-    let first = tables[at + TREE_BODY];
-    let bodies = tables[at + TREE_BODIES];
-    let root = tables[BODIES_AT] + first * BODY;
+fn tree_of(index: u32) -> Tree {
+    let at = tables[TREES_AT] + index * TREE;
+    let body = tables[at + TREE_BODY];
+    let dof = tables[at + TREE_DOF];
+    let root = tables[BODIES_AT] + body * BODY;
     var origin = real3(root + BODY_PLACE);
     if (tables[at + TREE_FREE] == 1u) {
         origin = q3(tables[tables[JOINTS_AT] + tables[root + BODY_JOINT] * JOINT + JOINT_Q]);
     }
-    for (var local = 0u; local < bodies; local++) {
-        outward(first + local, local, first, origin);
-        keep_spatial(VELOCITIES_AT() + 6u * (first + local), velocities[local]);
+    let packed = tables[tables[DOFS_AT] + dof * DOF + DOF_ROW];
+    return Tree(body, tables[at + TREE_BODIES], dof, tables[at + TREE_DOFS], packed, origin);
+}
+
+@compute @workgroup_size(64)
+fn articulate(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
+    env = id.x;
+    if (env >= params.envs) { return; }
+    let tree = tree_of(group.y);
+    for (var local = 0u; local < tree.bodies; local++) {
+        outward(tree, local);
     }
-    for (var local = 0u; local < bodies; local++) {
-        let moving = cross_force(velocities[local], momentum(inertias[local], velocities[local]));
-        forces[local] = add(momentum(inertias[local], forces[local]), moving);
-    }
-    for (var left = bodies; left > 0u; left--) {
-        inward(first + left - 1u, left - 1u, first, origin);
-    }
-    let dof = tables[at + TREE_DOF];
-    let dofs = tables[at + TREE_DOFS];
-    for (var local = 0u; local < dofs; local++) { efforts[local] = effort(dof + local); }
+    for (var local = 0u; local < tree.bodies; local++) { burden(tree, local); }
+    for (var left = tree.bodies; left > 0u; left--) { inward(tree, left - 1u); }
     // Twice only where a drive is at its limit.
     for (var round = 0u; round < 2u; round++) {
-        solve_smooth(dof, dofs);
-        if (round == 1u || !limit_drives(dof, dofs)) { break; }
+        factorise(tree);
+        unweigh(tree);
+        if (round == 1u || !limit_drives(tree)) { break; }
     }
-    for (var local = 0u; local < dofs; local++) { keep(SMOOTH_AT() + dof + local, x[local]); }
+    for (var own = 0u; own < tree.dofs; own++) {
+        let dof = tree.dof + own;
+        let row = tables[tables[DOFS_AT] + dof * DOF + DOF_ROW];
+        keep_spatial(6u * dof, axes[own]);
+        keep(WEIGHTED_AT() + dof, weighted[own]);
+        for (var k = 0u; k < tables[tables[DOFS_AT] + dof * DOF + DOF_DEPTH]; k++) {
+            keep(FACTORS_AT() + row + k, factors[row + k - tree.packed]);
+        }
+    }
 }

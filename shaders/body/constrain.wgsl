@@ -1,5 +1,5 @@
-// Contacts and joint limits as rows of the soft constraint problem (src/body/constrain.rs). One row
-// of workgroups a constraint, slots first, then joints; one invocation an environment.
+// Contacts and joint limits as mass-weighted rows of the soft constraint problem (src/body/constrain.rs). One
+// row of workgroups a contact, then one for every three joints; one invocation an environment.
 //
 // tables       see `tables`
 // state        [positions + dofs][envs]
@@ -7,7 +7,7 @@
 // touches      [slots * 10][envs]: place, normal, tangent, distance
 // keys         [slots][envs]: pair * 8 + point
 // counts       [2][envs]: contacts, overflow
-// rows         [2][slots * 3 + joints][quads][envs]: jacobian, then response, over degrees of freedom
+// rows         [slots * 3 + joints][quads][envs], each over the degrees of freedom
 // constraints  [slots + joints][CONSTRAINT][envs]
 
 #import tables
@@ -31,9 +31,7 @@ struct Params {
 @group(0) @binding(8) var<uniform> params: Params;
 
 var<private> env: u32;
-// Of each degree of freedom, along the normal and both tangents; a limit has the first alone.
-var<private> jacobian: array<vec3f, 80>;
-// M^-1 of it.
+// Of each degree of freedom, three rows: a contact's normal and tangents, or three joints' limits.
 var<private> x: array<vec3f, 80>;
 
 fn q(index: u32) -> f32 { return state[index * params.envs + env]; }
@@ -73,7 +71,7 @@ fn part(first: u32, second: u32, point: vec3f, directions: mat3x3f) {
             let m = 6u * dof;
             let angular = vec3f(kept(m), kept(m + 1u), kept(m + 2u));
             let linear = vec3f(kept(m + 3u), kept(m + 4u), kept(m + 5u));
-            jacobian[dof] = sign * ((linear + cross(angular, arm)) * directions);
+            x[dof] = sign * ((linear + cross(angular, arm)) * directions);
         }
     }
 }
@@ -81,30 +79,21 @@ fn part(first: u32, second: u32, point: vec3f, directions: mat3x3f) {
 // Speeds along the rows, of the velocities that there are.
 fn speeds() -> vec3f {
     var sum = vec3f(0.0);
-    for (var dof = 0u; dof < tables[DOF_COUNT]; dof++) { sum += jacobian[dof] * v(dof); }
+    for (var dof = 0u; dof < tables[DOF_COUNT]; dof++) { sum += x[dof] * v(dof); }
     return sum;
 }
 
-// x = M^-1 jacobian.
-fn respond() {
-    let dofs = tables[DOF_COUNT];
-    for (var dof = 0u; dof < dofs; dof++) { x[dof] = jacobian[dof]; }
-    for (var left = dofs; left > 0u; left--) {
-        let value = x[left - 1u];
+// x = L^-T x. The degrees of freedom beyond one stand right behind it.
+fn weigh() {
+    for (var left = tables[DOF_COUNT]; left > 0u; left--) {
         let info = tables[DOFS_AT] + (left - 1u) * DOF;
-        let row = tables[info + DOF_ROW];
-        for (var k = 1u; k < tables[info + DOF_DEPTH]; k++) {
-            x[tables[tables[COLUMNS_AT] + row + k]] -= kept(FACTORS_AT() + row + k) * value;
+        let depth = tables[info + DOF_DEPTH];
+        var value = x[left - 1u];
+        for (var beyond = left; beyond < tables[info + DOF_LAST]; beyond++) {
+            let end = tables[tables[DOFS_AT] + beyond * DOF + DOF_END];
+            value -= kept(FACTORS_AT() + end - depth) * x[beyond];
         }
-    }
-    for (var dof = 0u; dof < dofs; dof++) {
-        let info = tables[DOFS_AT] + dof * DOF;
-        let row = tables[info + DOF_ROW];
-        var value = x[dof] / kept(FACTORS_AT() + row);
-        for (var k = 1u; k < tables[info + DOF_DEPTH]; k++) {
-            value -= kept(FACTORS_AT() + row + k) * x[tables[tables[COLUMNS_AT] + row + k]];
-        }
-        x[dof] = value;
+        x[left - 1u] = value * kept(FACTORS_AT() + tables[info + DOF_ROW]);
     }
 }
 
@@ -135,30 +124,26 @@ fn write(constraint: u32, field: u32, value: f32) {
     constraints[(constraint * CONSTRAINT + field) * params.envs + env] = value;
 }
 
-// The rows, of as many directions as there are, and the block of their product.
-fn finish(constraint: u32, row: u32, count: u32) {
-    respond();
-    let half = (3u * tables[SLOTS] + tables[JOINT_COUNT]) * tables[QUADS];
+// Weighs the rows and writes as many as there are.
+fn finish(row: u32, count: u32) {
+    weigh();
     for (var k = 0u; k < count; k++) {
         for (var quad = 0u; quad < tables[QUADS]; quad++) {
             let d = 4u * quad;
             let at = (row + k) * tables[QUADS] + quad;
-            let j = vec4f(jacobian[d][k], jacobian[d + 1u][k], jacobian[d + 2u][k], jacobian[d + 3u][k]);
-            rows[at * params.envs + env] = j;
-            rows[(half + at) * params.envs + env] = vec4f(x[d][k], x[d + 1u][k], x[d + 2u][k], x[d + 3u][k]);
+            rows[at * params.envs + env] = vec4f(x[d][k], x[d + 1u][k], x[d + 2u][k], x[d + 3u][k]);
         }
     }
-    var block = mat3x3f();
+}
+
+// Of the three rows with each other.
+fn products() -> mat3x3f {
+    var sum = mat3x3f();
     for (var dof = 0u; dof < tables[DOF_COUNT]; dof++) {
-        let j = jacobian[dof];
-        block += mat3x3f(x[dof] * j.x, x[dof] * j.y, x[dof] * j.z);
+        let j = x[dof];
+        sum += mat3x3f(j * j.x, j * j.y, j * j.z);
     }
-    write(constraint, BLOCK, block[0][0]);
-    write(constraint, BLOCK + 1u, block[0][1]);
-    write(constraint, BLOCK + 2u, block[0][2]);
-    write(constraint, BLOCK + 3u, block[1][1]);
-    write(constraint, BLOCK + 4u, block[1][2]);
-    write(constraint, BLOCK + 5u, block[2][2]);
+    return sum;
 }
 
 fn contact(slot: u32) {
@@ -179,10 +164,18 @@ fn contact(slot: u32) {
     let pyramid = 2.0 * friction * friction * (1.0 + friction * friction);
     write(slot, SOFTNESS, regular * select(1.0, pyramid, friction > 0.0));
     write(slot, FRICTION, friction);
-    finish(slot, 3u * slot, 3u);
+    finish(3u * slot, 3u);
+    let block = products();
+    write(slot, BLOCK, block[0][0]);
+    write(slot, BLOCK + 1u, block[0][1]);
+    write(slot, BLOCK + 2u, block[0][2]);
+    write(slot, BLOCK + 3u, block[1][1]);
+    write(slot, BLOCK + 4u, block[1][2]);
+    write(slot, BLOCK + 5u, block[2][2]);
 }
 
-fn limit(index: u32) {
+// A joint's limit, if it is past it, as one of the three rows.
+fn limit(index: u32, k: u32) {
     let joint = tables[JOINTS_AT] + index * JOINT;
     let constraint = tables[SLOTS] + index;
     write(constraint, ACTIVE, 0.0);
@@ -192,30 +185,45 @@ fn limit(index: u32) {
     let where_q = tables[joint + JOINT_Q];
     let dof = tables[joint + JOINT_V];
     var distance = 0.0;
+    var axis = vec3f(0.0);
+    var count = 1u;
     if (tables[joint + JOINT_KIND] == BALL) {
         let rotation = rotation_vector(q_turn(where_q));
         let angle = length(rotation);
         distance = high - angle;
-        if (distance >= 0.0) { return; }
-        for (var k = 0u; k < 3u; k++) { jacobian[dof + k].x = -rotation[k] / angle; }
+        axis = -rotation / angle;
+        count = 3u;
     } else {
         let angle = q(where_q);
         let at_low = angle - low < high - angle;
         distance = select(high - angle, angle - low, at_low);
-        if (distance >= 0.0) { return; }
-        jacobian[dof].x = select(-1.0, 1.0, at_low);
+        axis.x = select(-1.0, 1.0, at_low);
+    }
+    if (distance >= 0.0) { return; }
+    var speed = 0.0;
+    for (var i = 0u; i < count; i++) {
+        x[dof + i][k] = axis[i];
+        speed += axis[i] * v(dof + i);
     }
     let soft = compliance(joint + JOINT_SOFTNESS, distance);
     let looseness = real(tables[DOFS_AT] + dof * DOF + DOF_LOOSENESS);
-    write(constraint, TARGET, -soft.y * speeds().x - soft.x * soft.z * distance);
+    write(constraint, TARGET, -soft.y * speed - soft.x * soft.z * distance);
     write(constraint, SOFTNESS, (1.0 - soft.z) / soft.z * looseness);
     write(constraint, ACTIVE, 1.0);
-    finish(constraint, 3u * tables[SLOTS] + index, 1u);
+}
+
+fn limits(first: u32) {
+    let count = min(3u, tables[JOINT_COUNT] - first);
+    for (var k = 0u; k < count; k++) { limit(first + k, k); }
+    finish(3u * tables[SLOTS] + first, count);
+    var squares = vec3f(0.0);
+    for (var dof = 0u; dof < tables[DOF_COUNT]; dof++) { squares += x[dof] * x[dof]; }
+    for (var k = 0u; k < count; k++) { write(tables[SLOTS] + first + k, BLOCK, squares[k]); }
 }
 
 @compute @workgroup_size(64)
 fn constrain(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     env = id.x;
     if (env >= params.envs) { return; }
-    if (group.y < tables[SLOTS]) { contact(group.y); } else { limit(group.y - tables[SLOTS]); }
+    if (group.y < tables[SLOTS]) { contact(group.y); } else { limits(3u * (group.y - tables[SLOTS])); }
 }

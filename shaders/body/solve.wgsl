@@ -1,5 +1,5 @@
-// Projected Gauss-Seidel over limits and contacts (src/body/sweep.rs), then one semi-implicit step
-// forward. One invocation an environment.
+// Projected Gauss-Seidel over limits and contacts (src/body/sweep.rs) in mass-weighted coordinates, then one
+// semi-implicit step forward. One invocation an environment.
 //
 // tables       see `tables`
 // state        [positions + dofs][envs], moved on
@@ -37,7 +37,10 @@ const SLOTS_MOST = 32u;
 const JOINTS_MOST = 64u;
 
 var<private> env: u32;
+// Mass-weighted, of the degrees of freedom.
 var<private> acceleration: array<vec4f, 20>;
+// Of the degrees of freedom themselves.
+var<private> plain: array<f32, 80>;
 var<private> forces: array<vec4f, 32>;
 var<private> limits: array<f32, 64>;
 
@@ -65,16 +68,14 @@ fn along(friction: f32, edges: vec4f) -> vec3f {
 }
 
 fn push(row: u32, force: f32) {
-    let all = 3u * tables[SLOTS] + tables[JOINT_COUNT];
-    let at = (all + row) * tables[QUADS];
+    let at = row * tables[QUADS];
     for (var quad = 0u; quad < tables[QUADS]; quad++) {
         acceleration[quad] += force * rows[(at + quad) * params.envs + env];
     }
 }
 
 fn pushes(row: u32, force: vec3f) {
-    let all = 3u * tables[SLOTS] + tables[JOINT_COUNT];
-    let at = (all + row) * tables[QUADS];
+    let at = row * tables[QUADS];
     for (var quad = 0u; quad < tables[QUADS]; quad++) {
         let n = rows[(at + quad) * params.envs + env];
         let t = rows[(at + tables[QUADS] + quad) * params.envs + env];
@@ -158,10 +159,22 @@ fn turn(at: u32, dof: u32) {
     for (var k = 0u; k < 3u; k++) { state[(at + 1u + k) * params.envs + env] = after[k]; }
 }
 
+// L^-1 of the mass-weighted acceleration.
+fn unweigh() {
+    for (var dof = 0u; dof < tables[DOF_COUNT]; dof++) {
+        let info = tables[DOFS_AT] + dof * DOF;
+        let row = tables[info + DOF_ROW];
+        var value = acceleration[dof / 4u][dof % 4u];
+        for (var k = 1u; k < tables[info + DOF_DEPTH]; k++) {
+            value -= dynamics[(FACTORS_AT() + row + k) * params.envs + env] * plain[tables[tables[COLUMNS_AT] + row + k]];
+        }
+        plain[dof] = value * dynamics[(FACTORS_AT() + row) * params.envs + env];
+    }
+}
+
 fn integrate() {
     for (var dof = 0u; dof < tables[DOF_COUNT]; dof++) {
-        let at = (tables[POSITIONS] + dof) * params.envs + env;
-        state[at] += params.dt * acceleration[dof / 4u][dof % 4u];
+        state[(tables[POSITIONS] + dof) * params.envs + env] += params.dt * plain[dof];
     }
     for (var index = 0u; index < tables[JOINT_COUNT]; index++) {
         let joint = tables[JOINTS_AT] + index * JOINT;
@@ -181,7 +194,7 @@ fn solve(@builtin(global_invocation_id) id: vec3u) {
     let contacts = counts[env];
     let joints = tables[JOINT_COUNT];
     for (var dof = 0u; dof < tables[DOF_COUNT]; dof++) {
-        acceleration[dof / 4u][dof % 4u] = dynamics[(SMOOTH_AT() + dof) * params.envs + env];
+        acceleration[dof / 4u][dof % 4u] = dynamics[(WEIGHTED_AT() + dof) * params.envs + env];
     }
     let limits_at = 5u * tables[SLOTS];
     for (var joint = 0u; joint < joints; joint++) {
@@ -198,6 +211,7 @@ fn solve(@builtin(global_invocation_id) id: vec3u) {
         for (var joint = 0u; joint < joints; joint++) { relax_limit(joint); }
         for (var slot = 0u; slot < contacts; slot++) { relax_contact(slot); }
     }
+    unweigh();
     integrate();
     for (var slot = 0u; slot < tables[SLOTS]; slot++) {
         let used = slot < contacts;

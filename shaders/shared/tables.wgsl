@@ -61,17 +61,18 @@ const BALL = 1u;
 const HINGE = 2u;
 
 // A degree of freedom.
-const DOF_PARENT = 0u;
-const DOF_DEPTH = 1u;
-const DOF_ROW = 2u;
-const DOF_ARMATURE = 3u;
-const DOF_TARGET = 4u;      // place among the drives' targets, NONE without a drive
-const DOF_STIFFNESS = 5u;
-const DOF_DAMPING = 6u;
-const DOF_LIMIT = 7u;
-const DOF_LOOSENESS = 8u;
-const DOF_JOINT = 9u;
-const DOF = 10u;
+const DOF_DEPTH = 0u;
+const DOF_ROW = 1u;         // of the packed mass matrix
+const DOF_END = 2u;         // of that row: the entry of an ancestor stands as far before it as that is deep
+const DOF_LAST = 3u;        // one past those that it moves
+const DOF_ARMATURE = 4u;
+const DOF_TARGET = 5u;      // place among the drives' targets, NONE without a drive
+const DOF_STIFFNESS = 6u;
+const DOF_DAMPING = 7u;
+const DOF_LIMIT = 8u;
+const DOF_LOOSENESS = 9u;
+const DOF_BODY = 10u;
+const DOF = 11u;
 
 // A tree.
 const TREE_BODY = 0u;       // first

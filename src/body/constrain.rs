@@ -3,7 +3,7 @@
 
 use super::collide::Contacts;
 use super::drive::rotation_vector;
-use super::factor::{LANES, solve_lanes};
+use super::factor::{LANES, weigh_lanes};
 use super::kinematics::{origin, quaternion};
 use super::model::{Kind, Model, Softness};
 use super::spatial::Spatial;
@@ -20,10 +20,9 @@ pub type Lane = [f32; 8];
 pub struct Rows {
     pub stride: usize,
     pub len: usize,
-    /// How degrees of freedom move the constrained distance.
-    pub jacobian: Vec<Lane>,
-    /// How a unit force accelerates the degrees of freedom: M^-1 J^T.
-    pub response: Vec<Lane>,
+    /// How degrees of freedom move the constrained distance, J; mass-weighted once all are there, which
+    /// is also how a unit force along the row accelerates them.
+    pub values: Vec<Lane>,
 }
 
 /// A joint at the end of its range: one row.
@@ -82,52 +81,50 @@ impl Rows {
 
     pub fn clear(&mut self) {
         self.len = 0;
-        self.jacobian.clear();
+        self.values.clear();
     }
 
     /// A new row of zeros.
     pub fn add(&mut self) -> usize {
         self.len += 1;
-        self.jacobian.resize(self.len * self.stride, [0.0; LANE]);
+        self.values.resize(self.len * self.stride, [0.0; LANE]);
         self.len - 1
     }
 
-    pub fn jacobian(&self, row: usize) -> &[f32] {
-        self.jacobian[row * self.stride..][..self.stride].as_flattened()
+    pub fn row(&self, row: usize) -> &[f32] {
+        self.values[row * self.stride..][..self.stride].as_flattened()
     }
 
-    fn jacobian_mut(&mut self, row: usize) -> &mut [f32] {
-        self.jacobian[row * self.stride..][..self.stride].as_flattened_mut()
+    pub fn row_mut(&mut self, row: usize) -> &mut [f32] {
+        self.values[row * self.stride..][..self.stride].as_flattened_mut()
     }
 
     fn velocity(&self, row: usize, v: &[f32]) -> f32 {
-        self.jacobian(row).iter().zip(v).map(|(j, v)| j * v).sum()
+        self.row(row).iter().zip(v).map(|(j, v)| j * v).sum()
     }
 
-    /// Fills in `response` for all rows. `block` is scratch, `[dofs]`.
-    pub fn respond(
+    /// Turns all rows into mass-weighted ones. `block` is scratch, `[dofs]`.
+    pub fn weigh(
         &mut self,
         model: &Model,
         columns: &[usize],
         factors: &[f32],
         block: &mut [[f32; LANES]],
     ) {
-        self.response.resize(self.len * self.stride, [0.0; LANE]);
         for first in (0..self.len).step_by(LANES) {
             let lanes = LANES.min(self.len - first);
-            for (lane, row) in (first..first + lanes).enumerate() {
-                for (x, j) in block.iter_mut().zip(self.jacobian(row)) {
-                    x[lane] = *j;
+            for lane in 0..lanes {
+                for (x, value) in block.iter_mut().zip(self.row(first + lane)) {
+                    x[lane] = *value;
                 }
             }
             for x in block.iter_mut() {
                 x[lanes..].fill(0.0);
             }
-            solve_lanes(model, columns, factors, block);
-            for (lane, row) in (first..first + lanes).enumerate() {
-                let response = &mut self.response[row * self.stride..][..self.stride];
-                for (r, x) in response.as_flattened_mut().iter_mut().zip(block.iter()) {
-                    *r = x[lane];
+            weigh_lanes(model, columns, factors, block);
+            for lane in 0..lanes {
+                for (value, x) in self.row_mut(first + lane).iter_mut().zip(block.iter()) {
+                    *value = x[lane];
                 }
             }
         }
@@ -170,7 +167,7 @@ pub fn limits(
         let row = rows.add();
         let dofs = joint.kind.dofs();
         let axis = axis.to_array();
-        rows.jacobian_mut(row)[joint.v..][..dofs].copy_from_slice(&axis[..dofs]);
+        rows.row_mut(row)[joint.v..][..dofs].copy_from_slice(&axis[..dofs]);
         let ([stiffness, damping], impedance) = response(&joint.softness, distance, dt);
         let inverse_mass = model.dofs[joint.v].looseness;
         limits.push(Limit {
@@ -256,7 +253,7 @@ fn add_point(
 ) {
     let arm = point - origin(model, model.bodies[body].tree, q);
     let stride = rows.stride * LANE;
-    let values = &mut rows.jacobian.as_flattened_mut()[row * stride..][..DIRECTIONS * stride];
+    let values = &mut rows.values.as_flattened_mut()[row * stride..][..DIRECTIONS * stride];
     let mut next = model.bodies[body].last_dof;
     while let Some(dof) = next {
         let motion = axes[dof].at(arm);

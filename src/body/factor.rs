@@ -1,5 +1,8 @@
-//! M = L^T D L, with L as sparse as the tree: Featherstone, "Efficient Factorization of the
+//! M = L^T L, with L as sparse as the tree: Featherstone, "Efficient Factorization of the
 //! Joint-Space Inertia Matrix for Branched Kinematic Trees", IJRR 24(6), 2005.
+//!
+//! In the mass-weighted coordinates L a the mass matrix is one: a force J^T f accelerates by
+//! L^-T J^T f, and the same vector L^-T J^T says what its constraint notices of an acceleration.
 
 use super::model::Model;
 use multiversion::multiversion;
@@ -11,57 +14,63 @@ pub fn columns(model: &Model) -> Vec<usize> {
     (0..model.dofs.len()).flat_map(way).collect()
 }
 
-/// Turns a packed mass matrix into its factors: D in the diagonal's place, L below it.
+/// Turns a packed mass matrix into its factor L, the diagonal inverted.
 #[inline]
 pub fn factor(model: &Model, columns: &[usize], matrix: &mut [f32]) {
     for dof in model.dofs.iter().rev() {
         let (above, row) = matrix.split_at_mut(dof.row);
         let row = &mut row[..dof.depth];
-        let inverse = 1.0 / row[0];
+        row[0] = 1.0 / row[0].sqrt();
         for k in 1..dof.depth {
-            let scaled = row[k] * inverse;
+            row[k] *= row[0];
+        }
+        for k in 1..dof.depth {
             let ancestor = &model.dofs[columns[dof.row + k]];
             let target = &mut above[ancestor.row..][..ancestor.depth];
             for (entry, along) in target.iter_mut().zip(&row[k..]) {
-                *entry -= scaled * along;
+                *entry -= row[k] * along;
             }
-        }
-        for entry in &mut row[1..] {
-            *entry *= inverse;
         }
     }
 }
 
-/// Right-hand sides solved side by side.
-pub const LANES: usize = 16;
-
-/// Solves for `x`, `[dofs]`, in place.
+/// x = L^-T x: a force over the degrees of freedom, `[dofs]`, becomes a mass-weighted acceleration.
 #[inline]
-pub fn solve(model: &Model, columns: &[usize], factors: &[f32], x: &mut [f32]) {
+pub fn weigh(model: &Model, columns: &[usize], factors: &[f32], x: &mut [f32]) {
     for (index, dof) in model.dofs.iter().enumerate().rev() {
-        let value = x[index];
+        let value = x[index] * factors[dof.row];
+        x[index] = value;
         for k in 1..dof.depth {
             x[columns[dof.row + k]] -= factors[dof.row + k] * value;
         }
     }
+}
+
+/// x = L^-1 x: a mass-weighted acceleration becomes one of the degrees of freedom, `[dofs]`.
+#[inline]
+pub fn unweigh(model: &Model, columns: &[usize], factors: &[f32], x: &mut [f32]) {
     for (index, dof) in model.dofs.iter().enumerate() {
-        let mut value = x[index] / factors[dof.row];
+        let mut value = x[index];
         for k in 1..dof.depth {
             value -= factors[dof.row + k] * x[columns[dof.row + k]];
         }
-        x[index] = value;
+        x[index] = value * factors[dof.row];
     }
 }
 
-/// [`solve`] for `LANES` right-hand sides, `x` being `[dofs][LANES]`.
+/// Vectors weighed side by side.
+pub const LANES: usize = 16;
+
+/// [`weigh`] for `LANES` vectors, `x` being `[dofs][LANES]`.
 #[multiversion(targets(
     "x86_64+avx512f+avx512vl+avx512dq+fma",
     "x86_64+avx2+fma",
     "aarch64+neon"
 ))]
-pub fn solve_lanes(model: &Model, columns: &[usize], factors: &[f32], x: &mut [[f32; LANES]]) {
+pub fn weigh_lanes(model: &Model, columns: &[usize], factors: &[f32], x: &mut [[f32; LANES]]) {
     for (index, dof) in model.dofs.iter().enumerate().rev() {
-        let value = x[index];
+        let value = x[index].map(|value| value * factors[dof.row]);
+        x[index] = value;
         for k in 1..dof.depth {
             let factor = factors[dof.row + k];
             let target = &mut x[columns[dof.row + k]];
@@ -69,17 +78,5 @@ pub fn solve_lanes(model: &Model, columns: &[usize], factors: &[f32], x: &mut [[
                 target[lane] -= factor * value[lane];
             }
         }
-    }
-    for (index, dof) in model.dofs.iter().enumerate() {
-        let inverse = 1.0 / factors[dof.row];
-        let mut value = x[index].map(|value| value * inverse);
-        for k in 1..dof.depth {
-            let factor = factors[dof.row + k];
-            let source = &x[columns[dof.row + k]];
-            for lane in 0..LANES {
-                value[lane] -= factor * source[lane];
-            }
-        }
-        x[index] = value;
     }
 }

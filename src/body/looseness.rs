@@ -2,7 +2,7 @@
 //! constraints is measured in (MuJoCo's `body_invweight0` and `dof_invweight0`).
 
 use super::dynamics::{inertias, mass_matrix};
-use super::factor::{columns, factor, solve};
+use super::factor::{columns, factor, weigh};
 use super::kinematics::{kinematics, origin};
 use super::model::{Kind, Model};
 use super::pose::Pose;
@@ -28,8 +28,8 @@ impl Model {
         // J M^-1 J^T of one row.
         let response = |row: &[f32]| -> f32 {
             let mut x = row.to_vec();
-            solve(self, &columns, &factors, &mut x);
-            row.iter().zip(&x).map(|(a, b)| a * b).sum()
+            weigh(self, &columns, &factors, &mut x);
+            x.iter().map(|x| x * x).sum()
         };
         let of_body = |index: usize| {
             let body = &self.bodies[index];

@@ -5,7 +5,7 @@ use super::collide::{Contacts, find};
 use super::constrain::{Contact, Lane, Limit, Rows, contacts, limits};
 use super::drive::{Effort, efforts, limit};
 use super::dynamics::{bias, inertias, mass_matrix};
-use super::factor::{LANES, columns, factor, solve};
+use super::factor::{LANES, columns, factor, unweigh, weigh};
 use super::integrate::integrate;
 use super::kinematics::{kinematics, origin};
 use super::model::Model;
@@ -109,8 +109,9 @@ pub struct Physics {
     pub matrix: Vec<f32>,
     pub factors: Vec<f32>,
     efforts: Vec<Effort>,
-    /// Accelerations, `[dofs]`, were there no constraints.
+    /// Accelerations, `[dofs]`, were there no constraints, and the same mass-weighted.
     pub smooth: Vec<f32>,
+    pub weighted: Vec<f32>,
     pub found: Contacts,
     pub rows: Rows,
     pub limits: Vec<Limit>,
@@ -136,6 +137,7 @@ impl Physics {
             factors: vec![0.0; model.packed()],
             efforts: vec![Effort::default(); dofs],
             smooth: vec![0.0; dofs],
+            weighted: vec![0.0; dofs],
             found: Contacts::default(),
             limits: Vec::new(),
             contacts: Vec::new(),
@@ -200,7 +202,7 @@ impl Physics {
     pub fn relax(&mut self) {
         let acceleration = self.acceleration.as_flattened_mut();
         acceleration.fill(0.0);
-        acceleration[..self.smooth.len()].copy_from_slice(&self.smooth);
+        acceleration[..self.weighted.len()].copy_from_slice(&self.weighted);
         sweep(
             &self.rows,
             self.settings.sweeps,
@@ -209,6 +211,8 @@ impl Physics {
             &mut self.acceleration,
             &mut self.blocks,
         );
+        let acceleration = self.acceleration.as_flattened_mut();
+        unweigh(&self.model, &self.columns, &self.factors, acceleration);
     }
 
     /// Poses, velocities, bias forces, mass matrix.
@@ -266,10 +270,13 @@ impl Physics {
         self.factors.copy_from_slice(&self.matrix);
         for (index, (dof, effort)) in self.model.dofs.iter().zip(&self.efforts).enumerate() {
             self.factors[dof.row] += effort.armature;
-            self.smooth[index] = effort.force - self.bias[index];
+            self.weighted[index] = effort.force - self.bias[index];
         }
-        factor(&self.model, &self.columns, &mut self.factors);
-        solve(&self.model, &self.columns, &self.factors, &mut self.smooth);
+        let (model, columns) = (&self.model, &self.columns);
+        factor(model, columns, &mut self.factors);
+        weigh(model, columns, &self.factors, &mut self.weighted);
+        self.smooth.copy_from_slice(&self.weighted);
+        unweigh(model, columns, &self.factors, &mut self.smooth);
     }
 
     /// How limits, contacts found and degrees of freedom move each other.
@@ -299,7 +306,7 @@ impl Physics {
             &mut self.contacts,
         );
         self.rows
-            .respond(model, &self.columns, &self.factors, &mut self.block);
+            .weigh(model, &self.columns, &self.factors, &mut self.block);
     }
 
     /// Force with which each contact pushes its second geom, N, in the world's frame.

@@ -4,8 +4,8 @@
 use super::constrain::{Contact, Lane, Limit, Rows};
 use multiversion::multiversion;
 
-/// Improves the forces by `sweeps` rounds, and with them the acceleration of the degrees of freedom,
-/// `[stride]`. On entry `acceleration` is what it would be without constraints.
+/// Improves the forces by `sweeps` rounds, and with them the mass-weighted acceleration of the degrees of
+/// freedom, `[stride]`. On entry `acceleration` is what it would be without constraints.
 #[multiversion(targets(
     "x86_64+avx512f+avx512vl+avx512dq+fma",
     "x86_64+avx2+fma",
@@ -99,13 +99,8 @@ fn relax(contact: &mut Contact, block: &Block, mut now: [f32; 3]) -> [f32; 3] {
 }
 
 #[inline(always)]
-fn jacobian(rows: &Rows, row: usize) -> &[Lane] {
-    &rows.jacobian[row * rows.stride..][..rows.stride]
-}
-
-#[inline(always)]
-fn response(rows: &Rows, row: usize) -> &[Lane] {
-    &rows.response[row * rows.stride..][..rows.stride]
+fn values(rows: &Rows, row: usize) -> &[Lane] {
+    &rows.values[row * rows.stride..][..rows.stride]
 }
 
 #[inline(always)]
@@ -126,7 +121,7 @@ fn total(s: Lane) -> f32 {
 
 #[inline(always)]
 fn product(rows: &Rows, row: usize, acceleration: &[Lane]) -> f32 {
-    dot(jacobian(rows, row), acceleration)
+    dot(values(rows, row), acceleration)
 }
 
 #[inline(always)]
@@ -136,7 +131,7 @@ fn products(rows: &Rows, row: usize, acceleration: &[Lane]) -> [f32; 3] {
 
 #[inline(always)]
 fn push(rows: &Rows, row: usize, force: f32, acceleration: &mut [Lane]) {
-    for (a, r) in acceleration.iter_mut().zip(response(rows, row)) {
+    for (a, r) in acceleration.iter_mut().zip(values(rows, row)) {
         for lane in 0..8 {
             a[lane] += force * r[lane];
         }
@@ -145,7 +140,7 @@ fn push(rows: &Rows, row: usize, force: f32, acceleration: &mut [Lane]) {
 
 #[inline(always)]
 fn pushes(rows: &Rows, row: usize, forces: [f32; 3], acceleration: &mut [Lane]) {
-    let [n, t, s] = [0, 1, 2].map(|k| response(rows, row + k));
+    let [n, t, s] = [0, 1, 2].map(|k| values(rows, row + k));
     for (index, a) in acceleration.iter_mut().enumerate() {
         for lane in 0..8 {
             a[lane] += forces[0] * n[index][lane]
@@ -159,14 +154,18 @@ fn pushes(rows: &Rows, row: usize, forces: [f32; 3], acceleration: &mut [Lane]) 
 #[inline(always)]
 pub fn one(rows: &Rows, row: usize) -> Block {
     let mut block = [[0.0; 3]; 3];
-    block[0][0] = dot(jacobian(rows, row), response(rows, row));
+    block[0][0] = dot(values(rows, row), values(rows, row));
     block
 }
 
 /// Of a row and the two behind it.
 #[inline(always)]
 pub fn three(rows: &Rows, row: usize) -> Block {
-    std::array::from_fn(|i| {
-        std::array::from_fn(|k| dot(jacobian(rows, row + i), response(rows, row + k)))
-    })
+    let [n, t, s] = [0, 1, 2].map(|k| values(rows, row + k));
+    let (nt, ns, ts) = (dot(n, t), dot(n, s), dot(t, s));
+    [
+        [dot(n, n), nt, ns],
+        [nt, dot(t, t), ts],
+        [ns, ts, dot(s, s)],
+    ]
 }

@@ -74,8 +74,17 @@ fn fits(model: &Model, settings: &Settings) -> Result<(), TooLarge> {
     use crate::gpu::shader::solve::constants as solve;
     let bodies = model.trees.iter().map(|tree| tree.bodies.len()).max();
     let dofs = model.trees.iter().map(|tree| tree.dofs.len()).max();
+    let packed = model.trees.iter().map(|tree| {
+        let depths = model.dofs[tree.dofs.clone()].iter().map(|dof| dof.depth);
+        depths.sum()
+    });
     for (what, found, most) in [
-        ("bodies in a tree", bodies.unwrap_or(0), at::TREE_MOST),
+        ("bodies in a tree", bodies.unwrap_or(0), at::BODIES_MOST),
+        (
+            "entries in the mass matrix of a tree",
+            packed.max().unwrap_or(0),
+            at::PACKED_MOST,
+        ),
         (
             "degrees of freedom in a tree",
             dofs.unwrap_or(0),
@@ -142,8 +151,9 @@ fn joint(joint: &Joint) -> Vec<u32> {
 
 fn dofs(model: &Model) -> Vec<u32> {
     let (mut words, mut driven) = (Vec::new(), 0..);
-    for dof in &model.dofs {
-        words.extend(self::dof(dof));
+    let lasts = lasts(model);
+    for (dof, last) in model.dofs.iter().zip(lasts) {
+        words.extend(self::dof(dof, last));
         let target = at::DOF - at::DOF_TARGET;
         let place = words.len() - target as usize;
         words[place] = index(dof.drive.and_then(|_| driven.next()));
@@ -152,8 +162,9 @@ fn dofs(model: &Model) -> Vec<u32> {
 }
 
 /// All but the place of its target.
-fn dof(dof: &Dof) -> Vec<u32> {
-    let mut words = vec![index(dof.parent), dof.depth as u32, dof.row as u32];
+fn dof(dof: &Dof, last: usize) -> Vec<u32> {
+    let row = [dof.depth, dof.row, dof.row + dof.depth, last];
+    let mut words: Vec<u32> = row.map(|n| n as u32).to_vec();
     words.extend(reals(&[dof.armature]));
     words.push(at::NONE);
     let drive = dof
@@ -161,8 +172,19 @@ fn dof(dof: &Dof) -> Vec<u32> {
         .map(|drive| [drive.stiffness, drive.damping, drive.limit]);
     words.extend(reals(&drive.unwrap_or_default()));
     words.extend(reals(&[dof.looseness]));
-    words.push(dof.joint as u32);
+    words.push(dof.body as u32);
     words
+}
+
+/// One past the degrees of freedom that each moves: bodies stand right behind those that carry them.
+fn lasts(model: &Model) -> Vec<usize> {
+    let mut lasts: Vec<usize> = (1..=model.dofs.len()).collect();
+    for index in (0..model.dofs.len()).rev() {
+        if let Some(parent) = model.dofs[index].parent {
+            lasts[parent] = lasts[parent].max(lasts[index]);
+        }
+    }
+    lasts
 }
 
 fn trees(model: &Model) -> Vec<u32> {

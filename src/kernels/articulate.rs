@@ -1,4 +1,4 @@
-//! Poses, mass matrix and unconstrained acceleration of articulated bodies. Shader:
+//! Poses, factors of the mass matrix and unconstrained acceleration of articulated bodies. Shader:
 //! `shaders/body/articulate.wgsl`.
 
 use super::columns::{gather, scatter};
@@ -24,9 +24,8 @@ pub const POSE: usize = 7;
 /// Where the sections of `dynamics` begin, in numbers of an environment.
 #[derive(Clone, Copy, Debug)]
 pub struct Sections {
-    pub matrix: usize,
     pub factors: usize,
-    pub smooth: usize,
+    pub weighted: usize,
     pub velocities: usize,
     pub len: usize,
 }
@@ -34,14 +33,12 @@ pub struct Sections {
 impl Sections {
     pub fn of(model: &Model) -> Sections {
         let (dofs, packed) = (model.dofs.len(), model.packed());
-        let matrix = 6 * dofs;
-        let factors = matrix + packed;
-        let smooth = factors + packed;
-        let velocities = smooth + dofs;
+        let factors = 6 * dofs;
+        let weighted = factors + packed;
+        let velocities = weighted + dofs;
         Sections {
-            matrix,
             factors,
-            smooth,
+            weighted,
             velocities,
             len: velocities + 6 * model.bodies.len(),
         }
@@ -94,9 +91,8 @@ pub fn twin(
             scatter(poses, envs, env, POSE * body, &numbers(pose));
         }
         scatter(dynamics, envs, env, 0, &flat(&physics.axes));
-        scatter(dynamics, envs, env, at.matrix, &physics.matrix);
         scatter(dynamics, envs, env, at.factors, &physics.factors);
-        scatter(dynamics, envs, env, at.smooth, &physics.smooth);
+        scatter(dynamics, envs, env, at.weighted, &physics.weighted);
         scatter(
             dynamics,
             envs,

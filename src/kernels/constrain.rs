@@ -1,4 +1,4 @@
-//! Contacts and joint limits as rows of the soft constraint problem. Shader:
+//! Contacts and joint limits as mass-weighted rows of the soft constraint problem. Shader:
 //! `shaders/body/constrain.wgsl`.
 
 use super::articulate::{Sections, read, spatial};
@@ -25,6 +25,11 @@ pub const TOUCH: usize = 10;
 /// Numbers of a constraint.
 pub const CONSTRAINT: usize = at::CONSTRAINT as usize;
 
+/// Rows of workgroups: one a contact, then one for every three joints.
+pub fn row_groups(model: &Model, slots: usize) -> usize {
+    slots + model.joints.len().div_ceil(3)
+}
+
 /// Rows of an environment.
 pub fn rows(model: &Model, slots: usize) -> usize {
     3 * slots + model.joints.len()
@@ -33,7 +38,7 @@ pub fn rows(model: &Model, slots: usize) -> usize {
 #[allow(clippy::too_many_arguments)]
 pub fn launch(
     gpu: &Gpu,
-    constraints_of_all: usize,
+    rows_of_groups: usize,
     tables: &Buffer<u32>,
     state: &Buffer<f32>,
     dynamics: &Buffer<f32>,
@@ -47,7 +52,7 @@ pub fn launch(
     let [across, ..] = groups(&shader::CONSTRAIN, params.envs as usize);
     gpu.launch(
         &shader::CONSTRAIN,
-        [across, constraints_of_all as u32, 1],
+        [across, rows_of_groups as u32, 1],
         &[
             tables,
             state,
@@ -77,7 +82,7 @@ pub fn twin(
     let (model, envs) = (physics.model.clone(), params.envs as usize);
     let (slots, sections) = (physics.settings.slots, Sections::of(&model));
     let mut world = State::new(&model);
-    let mut axes = vec![0.0; sections.matrix];
+    let mut axes = vec![0.0; sections.factors];
     for (env, &count) in counts[..envs].iter().enumerate() {
         read(&model, state, envs, env, &mut world);
         gather(dynamics, envs, env, 0, &mut axes);
@@ -97,23 +102,8 @@ pub fn twin(
             set(at::TARGET, limit.target);
             set(at::SOFTNESS, limit.softness);
             set(at::ACTIVE, 1.0);
-            let block = one(&physics.rows, limit.row);
-            scatter(
-                constraints,
-                envs,
-                env,
-                place + at::BLOCK as usize,
-                &flat(&block),
-            );
-            write_row(
-                physics,
-                limit.row,
-                rows,
-                envs,
-                env,
-                slots,
-                3 * slots + limit.joint,
-            );
+            set(at::BLOCK, one(&physics.rows, limit.row)[0][0]);
+            write_row(physics, limit.row, rows, envs, env, 3 * slots + limit.joint);
         }
         for (slot, contact) in physics.contacts.iter().enumerate() {
             let place = slot * CONSTRAINT;
@@ -135,15 +125,7 @@ pub fn twin(
                 &flat(&block),
             );
             for k in 0..3 {
-                write_row(
-                    physics,
-                    contact.row + k,
-                    rows,
-                    envs,
-                    env,
-                    slots,
-                    3 * slot + k,
-                );
+                write_row(physics, contact.row + k, rows, envs, env, 3 * slot + k);
             }
         }
     }
@@ -179,28 +161,12 @@ fn flat(block: &Block) -> [f32; 6] {
     [b[0][0], b[0][1], b[0][2], b[1][1], b[1][2], b[2][2]]
 }
 
-/// A row's jacobian and response, `[2][rows][quads][envs][4]`.
-fn write_row(
-    physics: &Physics,
-    row: usize,
-    rows: &mut [f32],
-    envs: usize,
-    env: usize,
-    slots: usize,
-    to: usize,
-) {
-    let dofs = physics.model.dofs.len();
-    let quads = dofs.div_ceil(4);
-    let all = self::rows(&physics.model, slots);
-    let stride = physics.rows.stride;
-    for (part, from) in [&physics.rows.jacobian, &physics.rows.response]
-        .into_iter()
-        .enumerate()
-    {
-        let from = from[row * stride..][..stride].as_flattened();
-        for (quad, numbers) in from[..4 * quads].chunks_exact(4).enumerate() {
-            let place = (((part * all + to) * quads + quad) * envs + env) * 4;
-            rows[place..place + 4].copy_from_slice(numbers);
-        }
+/// A row, to `[rows][quads][envs][4]`.
+fn write_row(physics: &Physics, row: usize, rows: &mut [f32], envs: usize, env: usize, to: usize) {
+    let quads = physics.model.dofs.len().div_ceil(4);
+    let values = &physics.rows.row(row)[..4 * quads];
+    for (quad, numbers) in values.chunks_exact(4).enumerate() {
+        let place = ((to * quads + quad) * envs + env) * 4;
+        rows[place..place + 4].copy_from_slice(numbers);
     }
 }

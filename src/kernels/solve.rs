@@ -3,7 +3,7 @@
 
 use super::articulate::{Sections, read, write};
 use super::columns::{gather, scatter};
-use super::constrain::{CONSTRAINT, rows as rows_of};
+use super::constrain::CONSTRAINT;
 use crate::body::constrain::{Contact, Limit};
 use crate::body::physics::{Physics, State};
 use crate::gpu::kernel::groups;
@@ -70,12 +70,19 @@ pub fn twin(
 ) {
     let (model, envs) = (physics.model.clone(), params.envs as usize);
     let (slots, joints) = (physics.settings.slots, model.joints.len());
-    let smooth = Sections::of(&model).smooth;
+    let sections = Sections::of(&model);
     let mut world = State::new(&model);
     let mut numbers = [0.0; CONSTRAINT];
     for env in 0..envs {
         read(&model, state, envs, env, &mut world);
-        gather(dynamics, envs, env, smooth, &mut physics.smooth);
+        gather(dynamics, envs, env, sections.factors, &mut physics.factors);
+        gather(
+            dynamics,
+            envs,
+            env,
+            sections.weighted,
+            &mut physics.weighted,
+        );
         remember(warm, envs, env, slots, &mut world);
         physics.rows.clear();
         physics.limits.clear();
@@ -92,7 +99,7 @@ pub fn twin(
             if numbers[at::ACTIVE as usize] == 0.0 {
                 continue;
             }
-            let row = take_row(physics, rows, envs, env, slots, 3 * slots + joint);
+            let row = take_row(physics, rows, envs, env, 3 * slots + joint);
             physics.limits.push(Limit {
                 joint,
                 row,
@@ -104,9 +111,9 @@ pub fn twin(
         for slot in 0..counts[env] as usize {
             gather(constraints, envs, env, slot * CONSTRAINT, &mut numbers);
             let key = keys[slot * envs + env];
-            let row = take_row(physics, rows, envs, env, slots, 3 * slot);
-            take_row(physics, rows, envs, env, slots, 3 * slot + 1);
-            take_row(physics, rows, envs, env, slots, 3 * slot + 2);
+            let row = take_row(physics, rows, envs, env, 3 * slot);
+            take_row(physics, rows, envs, env, 3 * slot + 1);
+            take_row(physics, rows, envs, env, 3 * slot + 2);
             physics.found.keys.push(key);
             physics.contacts.push(Contact {
                 row,
@@ -151,28 +158,13 @@ fn record(world: &State, warm: &mut [f32], envs: usize, env: usize, slots: usize
 }
 
 /// Reads a row, and gives its place among the world's.
-fn take_row(
-    physics: &mut Physics,
-    rows: &[f32],
-    envs: usize,
-    env: usize,
-    slots: usize,
-    from: usize,
-) -> usize {
-    let (quads, all) = (
-        physics.model.dofs.len().div_ceil(4),
-        rows_of(&physics.model, slots),
-    );
+fn take_row(physics: &mut Physics, rows: &[f32], envs: usize, env: usize, from: usize) -> usize {
+    let quads = physics.model.dofs.len().div_ceil(4);
     let row = physics.rows.add();
-    let stride = physics.rows.stride;
-    physics.rows.response.resize((row + 1) * stride, [0.0; 8]);
-    let parts = [&mut physics.rows.jacobian, &mut physics.rows.response];
-    for (part, to) in parts.into_iter().enumerate() {
-        let to = to[row * stride..][..stride].as_flattened_mut();
-        for (quad, numbers) in to[..4 * quads].chunks_exact_mut(4).enumerate() {
-            let place = (((part * all + from) * quads + quad) * envs + env) * 4;
-            numbers.copy_from_slice(&rows[place..place + 4]);
-        }
+    let values = &mut physics.rows.row_mut(row)[..4 * quads];
+    for (quad, numbers) in values.chunks_exact_mut(4).enumerate() {
+        let place = ((from * quads + quad) * envs + env) * 4;
+        numbers.copy_from_slice(&rows[place..place + 4]);
     }
     row
 }

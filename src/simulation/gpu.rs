@@ -63,7 +63,7 @@ impl GpuSimulation {
             touches: zeros(TOUCH * slots),
             keys: Buffer::zeroed(gpu, slots * envs),
             counts: Buffer::zeroed(gpu, 2 * envs),
-            rows: zeros(2 * rows * quads * 4),
+            rows: zeros(rows * quads * 4),
             constraints: zeros((slots + joints) * CONSTRAINT),
             warm: Buffer::from_slice(gpu, &cold),
             forces: zeros(3 * (bodies + setup.watched.len())),
@@ -120,7 +120,7 @@ impl GpuSimulation {
     fn constrain(&self, _: bool) {
         constrain::launch(
             &self.gpu,
-            self.setup.settings.slots + self.setup.model.joints.len(),
+            constrain::row_groups(&self.setup.model, self.setup.settings.slots),
             &self.tables,
             &self.state,
             &self.dynamics,

@@ -90,7 +90,7 @@ impl Worlds {
             );
         }
         let watched: Vec<u32> = vec![2, 0, 1, 2, bodies as u32 - 1];
-        let rows = 2 * constrain::rows(&model, slots) * quads * 4;
+        let rows = constrain::rows(&model, slots) * quads * 4;
         let poison = |fields: usize| vec![POISON; fields * envs];
         let targets = draw.normals(model.driven() * envs);
         let mut pushes = vec![0.0; 6 * bodies * envs];
@@ -301,10 +301,9 @@ fn articulate_agrees() {
                 1e-5,
             );
             for (section, range, bar) in [
-                ("axes", 0..at.matrix, 1e-5),
-                ("matrix", at.matrix..at.factors, 1e-5),
-                ("factors", at.factors..at.smooth, 1e-4),
-                ("smooth", at.smooth..at.velocities, 1e-4),
+                ("axes", 0..at.factors, 1e-5),
+                ("factors", at.factors..at.weighted, 1e-4),
+                ("weighted", at.weighted..at.velocities, 1e-4),
                 ("velocities", at.velocities..at.len, 1e-5),
             ] {
                 near(
@@ -325,6 +324,7 @@ fn constrain_agrees() {
     for (scene, model, envs) in scenes() {
         let worlds = Worlds::new(model, envs, 2);
         let (params, joints) = (worlds.constrain_params(), worlds.model.joints.len());
+        let row_groups = constrain::row_groups(&worlds.model, worlds.settings.slots);
         let blank = (
             vec![POISON; worlds.rows.len()],
             vec![POISON; worlds.constraints.len()],
@@ -333,7 +333,7 @@ fn constrain_agrees() {
         let (rows, constraints) = (up(&gpu, &blank.0), up(&gpu, &blank.1));
         constrain::launch(
             &gpu,
-            worlds.settings.slots + joints,
+            row_groups,
             &up(&gpu, &worlds.tables),
             &up(&gpu, &worlds.state),
             &up(&gpu, &worlds.dynamics),
@@ -355,11 +355,7 @@ fn constrain_agrees() {
             cast_slice(&blank.0),
             cast_slice(&blank.1),
         ];
-        let groups = [
-            envs.div_ceil(64) as u32,
-            (worlds.settings.slots + joints) as u32,
-            1,
-        ];
+        let groups = [envs.div_ceil(64) as u32, row_groups as u32, 1];
         let outcome = checked::run(&shader::CONSTRAIN, groups, &buffers, &params);
         let checked = (outcome.of(6), outcome.of(7));
         // What constraints that do not act are left with means nothing.
@@ -385,15 +381,11 @@ fn constrain_agrees() {
                     1e-4,
                 );
             }
-            let (size, all) = (worlds.rows.len(), acting(&rows, &worlds.rows));
-            for half in [0..size / 2, size / 2..size] {
-                let (found, wanted) = (&all[half.clone()], &worlds.rows[half]);
-                let real = wanted.iter().filter(|&&w| w != POISON);
-                let most = real.fold(0.0f32, |most, w| most.max(w.abs()));
-                for (found, wanted) in found.iter().zip(wanted) {
-                    let off = (found - wanted).abs() / most;
-                    assert!(off <= 1e-4, "{}: {found} instead of {wanted}", what("rows"));
-                }
+            let real = worlds.rows.iter().filter(|&&w| w != POISON);
+            let most = real.fold(0.0f32, |most, w| most.max(w.abs()));
+            for (found, wanted) in acting(&rows, &worlds.rows).iter().zip(&worlds.rows) {
+                let off = (found - wanted).abs() / most;
+                assert!(off <= 1e-4, "{}: {found} instead of {wanted}", what("rows"));
             }
         }
     }
