@@ -1,10 +1,10 @@
-"""Throughput of MuJoCo's C engine on the humanoid, beside `footwork sim --device cpu`.
+"""Throughput of MuJoCo's C engine on the humanoid, beside `footwork sim` on the CPU and on lavapipe.
 
 physics.py FOOTWORK [--worlds N] [--seconds S] [--threads T] [--model FILE]
 
 Both play random targets for the drives, normal with 0.5 rad deviation, drawn anew 30 times a second, at
 120 steps a second, from standing. MuJoCo rolls out natively on its own threads, with its implicit
-integrator (explicit drives of this stiffness explode at this step) and its default solver; both take turns,
+integrator (explicit drives of this stiffness explode at this step) and its default solver; all take turns,
 three times each, and the medians are compared.
 """
 
@@ -39,12 +39,12 @@ def mujoco_per_s(model, worlds, seconds, threads, rng):
     return worlds * steps / (time.perf_counter() - begun)
 
 
-def footwork_per_s(binary, worlds, seconds, threads):
-    command = [binary, "sim", "--device", "cpu", "--json"]
+def footwork_per_s(binary, device, worlds, seconds, threads):
+    command = [binary, "sim", "--device", device, "--json"]
     command += ["--worlds", str(worlds), "--seconds", str(seconds)]
-    environment = {**os.environ, "RAYON_NUM_THREADS": str(threads)}
+    environment = {**os.environ, "RAYON_NUM_THREADS": str(threads), "LP_NUM_THREADS": str(threads)}
     output = subprocess.run(command, env=environment, check=True, capture_output=True).stdout
-    return json.loads(output)
+    return json.loads(output)["control_steps_per_s"]
 
 
 def main():
@@ -60,13 +60,15 @@ def main():
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     rng = np.random.default_rng(1)
     size = arguments.worlds, arguments.seconds, arguments.threads
-    theirs, ours = [], []
+    rates = {"MuJoCo": [], "cpu": [], "lavapipe": []}
     for _ in range(3):
-        theirs.append(mujoco_per_s(model, *size, rng))
-        ours.append(footwork_per_s(arguments.footwork, *size))
-        print(f"MuJoCo {theirs[-1]:.0f}, footwork {ours[-1]['control_steps_per_s']:.0f} control steps/s")
-    their, our = statistics.median(theirs), statistics.median(o["control_steps_per_s"] for o in ours)
-    print(f"{arguments.threads} threads: footwork {our:.0f}, MuJoCo {their:.0f}, ratio {our / their:.2f}")
+        rates["MuJoCo"].append(mujoco_per_s(model, *size, rng))
+        for device in ["cpu", "lavapipe"]:
+            rates[device].append(footwork_per_s(arguments.footwork, device, *size))
+        print(", ".join(f"{who} {rate[-1]:.0f}" for who, rate in rates.items()), "control steps/s")
+    medians = {who: statistics.median(rate) for who, rate in rates.items()}
+    for who, median in medians.items():
+        print(f"{who}: {median:.0f} control steps/s, {median / medians['MuJoCo']:.2f} times MuJoCo's")
 
 
 if __name__ == "__main__":

@@ -10,6 +10,11 @@
 //! an episode ended [`scatter`] draws new obstacles and [`reset`] starts another. After a rollout
 //! [`gae`] judges the actions and [`tally`] sums up the episodes. [`bandwidth`] and [`arithmetic`] measure
 //! what a device could do.
+//!
+//! A step of the simulated bodies, in order: [`articulate`] poses, masses and what the drives do, [`contact`] find what
+//! touches, [`constrain`] say how contacts and joint limits resist, [`solve`] find their forces and move on, [`blows`]
+//! sum up who hit whom. Before an action [`explore`] draws random targets; after it [`restart`] begins the worlds anew
+//! that ask for it or broke, and [`proprioception`] says what a character feels of its body.
 
 pub mod act;
 pub mod arithmetic;

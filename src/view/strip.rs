@@ -28,8 +28,8 @@ const FALL: f32 = 1.5;
 /// From the front of the body to where the camera stands, rad.
 const YAW: f32 = 1.1;
 /// From the camera to a single body, m, and how much further for each metre to either side.
-const NEAR: f32 = 3.9;
-const WIDE: f32 = 2.4;
+const NEAR: f32 = 4.1;
+const WIDE: f32 = 3.0;
 /// From the simulated body to the recorded one: to the right of the picture, and away, m.
 const ASIDE: [f32; 2] = [0.9, 0.6];
 
