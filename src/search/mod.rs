@@ -152,9 +152,11 @@ impl Index {
 
     /// Nearest candidate of every query, on all cores.
     pub fn nearest_all(&self, frames: &[u32], queries: &[[f32; PADDED]], found: &mut [u32]) {
-        let task = queries.len().div_ceil(rayon::current_num_threads());
-        let enough = (self.tree.bytes() / SHARE).min(TASK[1]);
-        let task = task.min(enough).max(TASK[0]);
+        // As many tasks for every thread, lest one wait for another's last.
+        let threads = rayon::current_num_threads();
+        let enough = (self.tree.bytes() / SHARE).clamp(TASK[0], TASK[1]);
+        let rounds = queries.len().div_ceil(threads * enough).max(1);
+        let task = queries.len().div_ceil(threads * rounds).max(TASK[0]);
         frames
             .par_chunks(task)
             .zip(queries.par_chunks(task))

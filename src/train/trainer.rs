@@ -151,17 +151,20 @@ pub fn train(
     interrupted: &AtomicBool,
     watch: Option<&Watch>,
 ) -> Result<Summary> {
-    let mut run = Run::open(config, folder, database, device, from)?;
-    if let Some(watch) = watch {
-        Watch::leave(&watch.worlds, run.world.watch()?);
-    }
-    let stopped_by = run.advance(interrupted, watch);
-    let outcome = stopped_by.and_then(|by| {
-        run.save(&folder.checkpoint("last"))?;
-        Ok(by)
-    });
-    run.progress.finish();
-    run.conclude(outcome)
+    // On a thread of the pool: another would fall asleep and be woken again at every parallel part.
+    rayon::scope(|_| {
+        let mut run = Run::open(config, folder, database, device, from)?;
+        if let Some(watch) = watch {
+            Watch::leave(&watch.worlds, run.world.watch()?);
+        }
+        let stopped_by = run.advance(interrupted, watch);
+        let outcome = stopped_by.and_then(|by| {
+            run.save(&folder.checkpoint("last"))?;
+            Ok(by)
+        });
+        run.progress.finish();
+        run.conclude(outcome)
+    })
 }
 
 impl<'a> Run<'a> {
