@@ -1,6 +1,6 @@
 """Throughput of MuJoCo's C engine on the humanoid, beside `footwork sim` on the CPU and on lavapipe.
 
-physics.py FOOTWORK [--worlds N] [--seconds S] [--threads T] [--model FILE]
+physics.py FOOTWORK [--worlds N] [--seconds S] [--threads T]
 
 Both play random targets for the drives, normal with 0.5 rad deviation, drawn anew 30 times a second, at
 120 steps a second, from standing. MuJoCo rolls out natively on its own threads, with its implicit
@@ -53,9 +53,8 @@ def main():
     parser.add_argument("--worlds", type=int, default=256)
     parser.add_argument("--seconds", type=float, default=10)
     parser.add_argument("--threads", type=int, default=os.cpu_count())
-    parser.add_argument("--model", default=str(MODEL))
     arguments = parser.parse_args()
-    model = mujoco.MjModel.from_xml_path(arguments.model)
+    model = mujoco.MjModel.from_xml_path(str(MODEL))
     model.opt.timestep = 1 / 120
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     rng = np.random.default_rng(1)

@@ -15,6 +15,7 @@
 // compile the longer the more of it there is.
 
 #import tables
+#import state
 #import spatial
 #import dynamics
 
@@ -38,19 +39,18 @@ const BODIES_MOST = 24u;
 const DOFS_MOST = 48u;
 const PACKED_MOST = 512u;
 
-var<private> env: u32;
 // Of the tree's bodies, counted from its first.
 // Accelerations on the way out, forces on the way in.
-var<private> forces: array<Spatial, 24>;
-var<private> inertias: array<Inertia, 24>;
+var<private> forces: array<Spatial, BODIES_MOST>;
+var<private> inertias: array<Inertia, BODIES_MOST>;
 // Of the tree's degrees of freedom, counted from its first.
-var<private> axes: array<Spatial, 48>;
-var<private> efforts: array<Effort, 48>;
-var<private> bias: array<f32, 48>;
-var<private> acceleration: array<f32, 48>;
-var<private> weighted: array<f32, 48>;
+var<private> axes: array<Spatial, DOFS_MOST>;
+var<private> efforts: array<Effort, DOFS_MOST>;
+var<private> bias: array<f32, DOFS_MOST>;
+var<private> acceleration: array<f32, DOFS_MOST>;
+var<private> weighted: array<f32, DOFS_MOST>;
 // Packed, counted from the tree's first entry.
-var<private> factors: array<f32, 512>;
+var<private> factors: array<f32, PACKED_MOST>;
 
 struct Pose {
     place: vec3f,
@@ -71,12 +71,6 @@ struct Tree {
     packed: u32,
     origin: vec3f,
 }
-
-fn q(index: u32) -> f32 { return state[index * params.envs + env]; }
-fn q3(index: u32) -> vec3f { return vec3f(q(index), q(index + 1u), q(index + 2u)); }
-// A quaternion of the state, where w comes first.
-fn q_turn(index: u32) -> vec4f { return normalize(vec4f(q3(index + 1u), q(index))); }
-fn v(dof: u32) -> f32 { return state[(tables[POSITIONS] + dof) * params.envs + env]; }
 
 fn kept(at: u32) -> f32 { return dynamics[at * params.envs + env]; }
 fn keep(at: u32, value: f32) { dynamics[at * params.envs + env] = value; }
@@ -219,7 +213,9 @@ fn burden(tree: Tree, local: u32) {
     let pushed = 6u * (tree.body + local);
     let torque = push3(pushed);
     let force = push3(pushed + 3u);
-    let arm = own.moment / own.mass;
+    let pose = pose_of(tree.body + local);
+    let centre = real3(tables[BODIES_AT] + (tree.body + local) * BODY + BODY_CENTRE);
+    let arm = pose.place + rotate(pose.turn, centre) - tree.origin;
     let push = Spatial(-torque - cross(arm, force), -force);
     forces[local] = add(add(momentum(own, forces[local]), moving), push);
 }
@@ -320,13 +316,8 @@ fn tree_of(index: u32) -> Tree {
     let at = tables[TREES_AT] + index * TREE;
     let body = tables[at + TREE_BODY];
     let dof = tables[at + TREE_DOF];
-    let root = tables[BODIES_AT] + body * BODY;
-    var origin = real3(root + BODY_PLACE);
-    if (tables[at + TREE_FREE] == 1u) {
-        origin = q3(tables[tables[JOINTS_AT] + tables[root + BODY_JOINT] * JOINT + JOINT_Q]);
-    }
     let packed = tables[tables[DOFS_AT] + dof * DOF + DOF_ROW];
-    return Tree(body, tables[at + TREE_BODIES], dof, tables[at + TREE_DOFS], packed, origin);
+    return Tree(body, tables[at + TREE_BODIES], dof, tables[at + TREE_DOFS], packed, origin_of(at));
 }
 
 @compute @workgroup_size(64)

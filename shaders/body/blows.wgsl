@@ -12,6 +12,7 @@
 // tallies  [TALLIES][envs]
 
 #import tables
+#import touches
 #import tallies
 
 struct Params {
@@ -25,19 +26,13 @@ struct Params {
 @group(0) @binding(1) var<storage, read_write> touches: array<f32>;
 @group(0) @binding(2) var<storage, read_write> keys: array<u32>;
 @group(0) @binding(3) var<storage, read_write> counts: array<u32>;
-@group(0) @binding(4) var<storage, read_write> warm: array<f32>;
+@group(0) @binding(4) var<storage, read_write> warm: array<u32>;
 @group(0) @binding(5) var<storage, read_write> watched: array<u32>;
 @group(0) @binding(6) var<storage, read_write> forces: array<f32>;
 @group(0) @binding(7) var<storage, read_write> tallies: array<u32>;
 @group(0) @binding(8) var<uniform> params: Params;
 
 var<private> env: u32;
-
-fn touch3(at: u32) -> vec3f {
-    let e = params.envs;
-    let place = at * e + env;
-    return vec3f(touches[place], touches[place + e], touches[place + 2u * e]);
-}
 
 fn add(entry: u32, force: vec3f) {
     for (var k = 0u; k < 3u; k++) { forces[(3u * entry + k) * params.envs + env] += force[k]; }
@@ -47,9 +42,9 @@ fn add(entry: u32, force: vec3f) {
 fn force_of(slot: u32, friction: f32) -> vec3f {
     let e = params.envs;
     let at = (params.slots + 4u * slot) * e + env;
-    let edges = vec4f(warm[at], warm[at + e], warm[at + 2u * e], warm[at + 3u * e]);
-    let normal = touch3(10u * slot + 3u);
-    let tangent = touch3(10u * slot + 6u);
+    let edges = bitcast<vec4f>(vec4u(warm[at], warm[at + e], warm[at + 2u * e], warm[at + 3u * e]));
+    let normal = touch3(TOUCH * slot + TOUCH_NORMAL);
+    let tangent = touch3(TOUCH * slot + TOUCH_TANGENT);
     if (friction <= 0.0) { return normal * edges.x; }
     let sideways = tangent * (edges.x - edges.y) + cross(normal, tangent) * (edges.z - edges.w);
     return normal * (edges.x + edges.y + edges.z + edges.w) + friction * sideways;

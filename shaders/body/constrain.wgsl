@@ -11,6 +11,8 @@
 // constraints  [slots + joints][CONSTRAINT][envs]
 
 #import tables
+#import state
+#import touches
 #import spatial
 #import dynamics
 #import constraints
@@ -30,20 +32,10 @@ struct Params {
 @group(0) @binding(7) var<storage, read_write> constraints: array<f32>;
 @group(0) @binding(8) var<uniform> params: Params;
 
-var<private> env: u32;
 // Of each degree of freedom, three rows: a contact's normal and tangents, or three joints' limits.
-var<private> x: array<vec3f, 80>;
+var<private> x: array<vec3f, ALL_DOFS_MOST>;
 
-fn q(index: u32) -> f32 { return state[index * params.envs + env]; }
-fn q3(index: u32) -> vec3f { return vec3f(q(index), q(index + 1u), q(index + 2u)); }
-fn q_turn(index: u32) -> vec4f { return normalize(vec4f(q3(index + 1u), q(index))); }
-fn v(dof: u32) -> f32 { return state[(tables[POSITIONS] + dof) * params.envs + env]; }
 fn kept(at: u32) -> f32 { return dynamics[at * params.envs + env]; }
-fn touch3(at: u32) -> vec3f {
-    let e = params.envs;
-    let place = at * e + env;
-    return vec3f(touches[place], touches[place + e], touches[place + 2u * e]);
-}
 
 // Which degrees of freedom move a body.
 fn movers(body: u32) -> vec3u {
@@ -59,12 +51,7 @@ fn part(first: u32, second: u32, point: vec3f, directions: mat3x3f) {
     let movers_of_first = movers(first);
     for (var index = 0u; index < tables[TREE_COUNT]; index++) {
         let tree = tables[TREES_AT] + index * TREE;
-        let root = tables[BODIES_AT] + tables[tree + TREE_BODY] * BODY;
-        var origin = real3(root + BODY_PLACE);
-        if (tables[tree + TREE_FREE] == 1u) {
-            origin = q3(tables[tables[JOINTS_AT] + tables[root + BODY_JOINT] * JOINT + JOINT_Q]);
-        }
-        let arm = point - origin;
+        let arm = point - origin_of(tree);
         for (var k = 0u; k < tables[tree + TREE_DOFS]; k++) {
             let dof = tables[tree + TREE_DOF] + k;
             let sign = f32((movers_of_second[dof / 32u] >> (dof % 32u)) & 1u) - f32((movers_of_first[dof / 32u] >> (dof % 32u)) & 1u);
@@ -96,6 +83,9 @@ fn weigh() {
         x[left - 1u] = value * kept(FACTORS_AT() + tables[info + DOF_ROW]);
     }
 }
+
+// The least regularisation (src/body/constrain.rs says why).
+const SOFTEST = 1e-6;
 
 // Stiffness and damping of a constraint, and its impedance at a distance.
 fn compliance(softness: u32, distance: f32) -> vec3f {
@@ -149,11 +139,11 @@ fn products() -> mat3x3f {
 fn contact(slot: u32) {
     if (slot >= counts[env]) { return; }
     let pair = tables[PAIRS_AT] + keys[slot * params.envs + env] / 8u * PAIR;
-    let at = slot * 10u;
+    let at = slot * TOUCH;
     let point = touch3(at);
-    let normal = touch3(at + 3u);
-    let tangent = touch3(at + 6u);
-    let distance = touches[(at + 9u) * params.envs + env];
+    let normal = touch3(at + TOUCH_NORMAL);
+    let tangent = touch3(at + TOUCH_TANGENT);
+    let distance = touches[(at + TOUCH_DISTANCE) * params.envs + env];
     let directions = mat3x3f(normal, tangent, cross(normal, tangent));
     part(tables[pair + PAIR_BODIES], tables[pair + PAIR_BODIES + 1u], point, directions);
     let soft = compliance(pair + PAIR_SOFTNESS, distance);
@@ -162,7 +152,7 @@ fn contact(slot: u32) {
     let regular = (1.0 - soft.z) / soft.z * real(pair + PAIR_LOOSENESS);
     for (var k = 0u; k < 3u; k++) { write(slot, TARGET + k, target_now[k]); }
     let pyramid = 2.0 * friction * friction * (1.0 + friction * friction);
-    write(slot, SOFTNESS, regular * select(1.0, pyramid, friction > 0.0));
+    write(slot, SOFTNESS, max(regular * select(1.0, pyramid, friction > 0.0), SOFTEST));
     write(slot, FRICTION, friction);
     finish(3u * slot, 3u);
     let block = products();
@@ -208,7 +198,7 @@ fn limit(index: u32, k: u32) {
     let soft = compliance(joint + JOINT_SOFTNESS, distance);
     let looseness = real(tables[DOFS_AT] + dof * DOF + DOF_LOOSENESS);
     write(constraint, TARGET, -soft.y * speed - soft.x * soft.z * distance);
-    write(constraint, SOFTNESS, (1.0 - soft.z) / soft.z * looseness);
+    write(constraint, SOFTNESS, max((1.0 - soft.z) / soft.z * looseness, SOFTEST));
     write(constraint, ACTIVE, 1.0);
 }
 

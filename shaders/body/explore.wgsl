@@ -1,5 +1,5 @@
-// Draws targets for the drives: normal, of a given deviation, about zero. One invocation a target of an
-// environment.
+// Draws targets for the drives: normal, of a given deviation, about zero. One row of workgroups
+// a target, one invocation an environment.
 //
 // targets  [driven][envs], rad
 
@@ -7,7 +7,6 @@
 
 struct Params {
     envs: u32,
-    driven: u32,
     deviation: f32, // rad
     seed: u32,
     clock: u32,
@@ -19,9 +18,9 @@ struct Params {
 
 @compute @workgroup_size(64)
 fn explore(@builtin(global_invocation_id) id: vec3u) {
-    let env = id.x % params.envs;
-    let index = id.x / params.envs;
-    if (index >= params.driven) { return; }
+    let env = id.x;
+    let index = id.y;
+    if (env >= params.envs) { return; }
     let bits = random4(params.seed, env, params.clock, params.stream + index);
     targets[index * params.envs + env] = params.deviation * gaussian(bits);
 }

@@ -3,7 +3,7 @@
 //
 // tables      see `tables`
 // state       [positions + dofs][envs]
-// poses       [bodies * 7][envs]
+// poses       [bodies * 7][envs], of this very state, as `articulate` finds them
 // dynamics    see `articulate`
 // characters  [1 + characters * (1 + keys)]: keys, then of each a tree and its bodies whose places it knows
 // felt        [characters][envs][width]: height of the root, its turn (6), its velocity (3) and angular
@@ -14,6 +14,7 @@
 // (Zhou et al., "On the Continuity of Rotation Representations in Neural Networks", CVPR 2019).
 
 #import tables
+#import state
 #import spatial
 #import dynamics
 
@@ -31,12 +32,8 @@ struct Params {
 @group(0) @binding(5) var<storage, read_write> felt: array<f32>;
 @group(0) @binding(6) var<uniform> params: Params;
 
-var<private> env: u32;
 var<private> cursor: u32;
 
-fn q(index: u32) -> f32 { return state[index * params.envs + env]; }
-fn q_turn(index: u32) -> vec4f { return normalize(vec4f(q(index + 1u), q(index + 2u), q(index + 3u), q(index))); }
-fn v(dof: u32) -> f32 { return state[(tables[POSITIONS] + dof) * params.envs + env]; }
 fn pose(body: u32, k: u32) -> f32 { return poses[(7u * body + k) * params.envs + env]; }
 fn place_of(body: u32) -> vec3f { return vec3f(pose(body, 0u), pose(body, 1u), pose(body, 2u)); }
 fn turn_of(body: u32) -> vec4f { return vec4f(pose(body, 3u), pose(body, 4u), pose(body, 5u), pose(body, 6u)); }

@@ -9,9 +9,10 @@
 // keys         [slots][envs]
 // counts       [2][envs]
 // warm         [slots * 5 + joints][envs]: of the step before, and then of this one, the contacts' keys
-//              (bit casts), their edges' forces [slots][4], and the limits' forces
+//              their edges' forces [slots][4], and the limits' forces, as bit casts
 
 #import tables
+#import state
 #import spatial
 #import dynamics
 #import constraints
@@ -28,34 +29,30 @@ struct Params {
 @group(0) @binding(4) var<storage, read_write> constraints: array<f32>;
 @group(0) @binding(5) var<storage, read_write> keys: array<u32>;
 @group(0) @binding(6) var<storage, read_write> counts: array<u32>;
-@group(0) @binding(7) var<storage, read_write> warm: array<f32>;
+@group(0) @binding(7) var<storage, read_write> warm: array<u32>;
 @group(0) @binding(8) var<uniform> params: Params;
 
 // Rust refuses more.
-const QUADS_MOST = 20u;
 const SLOTS_MOST = 32u;
 const JOINTS_MOST = 64u;
 
-var<private> env: u32;
 // Mass-weighted, of the degrees of freedom.
-var<private> acceleration: array<vec4f, 20>;
+var<private> acceleration: array<vec4f, ALL_DOFS_MOST / 4u>;
 // Of the degrees of freedom themselves.
-var<private> plain: array<f32, 80>;
-var<private> forces: array<vec4f, 32>;
-var<private> limits: array<f32, 64>;
+var<private> plain: array<f32, ALL_DOFS_MOST>;
+var<private> forces: array<vec4f, SLOTS_MOST>;
+var<private> limits: array<f32, JOINTS_MOST>;
 
-fn q(index: u32) -> f32 { return state[index * params.envs + env]; }
-fn v(dof: u32) -> f32 { return state[(tables[POSITIONS] + dof) * params.envs + env]; }
 fn field(constraint: u32, at: u32) -> f32 { return constraints[(constraint * CONSTRAINT + at) * params.envs + env]; }
 
 // Forces of the step before of the contact that is now in this slot.
 fn remembered(slot: u32) -> vec4f {
     let key = keys[slot * params.envs + env];
     for (var before = 0u; before < tables[SLOTS]; before++) {
-        if (bitcast<u32>(warm[before * params.envs + env]) == key) {
+        if (warm[before * params.envs + env] == key) {
             let at = (tables[SLOTS] + 4u * before) * params.envs + env;
             let e = params.envs;
-            return vec4f(warm[at], warm[at + e], warm[at + 2u * e], warm[at + 3u * e]);
+            return bitcast<vec4f>(vec4u(warm[at], warm[at + e], warm[at + 2u * e], warm[at + 3u * e]));
         }
     }
     return vec4f(0.0);
@@ -200,7 +197,7 @@ fn solve(@builtin(global_invocation_id) id: vec3u) {
     for (var joint = 0u; joint < joints; joint++) {
         limits[joint] = 0.0;
         if (field(tables[SLOTS] + joint, ACTIVE) == 0.0) { continue; }
-        limits[joint] = warm[(limits_at + joint) * params.envs + env];
+        limits[joint] = bitcast<f32>(warm[(limits_at + joint) * params.envs + env]);
         push(3u * tables[SLOTS] + joint, limits[joint]);
     }
     for (var slot = 0u; slot < contacts; slot++) {
@@ -215,11 +212,12 @@ fn solve(@builtin(global_invocation_id) id: vec3u) {
     integrate();
     for (var slot = 0u; slot < tables[SLOTS]; slot++) {
         let used = slot < contacts;
-        let key = select(NONE, keys[slot * params.envs + env], used);
-        warm[slot * params.envs + env] = bitcast<f32>(key);
+        warm[slot * params.envs + env] = select(NONE, keys[slot * params.envs + env], used);
         for (var edge = 0u; edge < 4u; edge++) {
-            warm[(tables[SLOTS] + 4u * slot + edge) * params.envs + env] = select(0.0, forces[slot][edge], used);
+            warm[(tables[SLOTS] + 4u * slot + edge) * params.envs + env] = bitcast<u32>(select(0.0, forces[slot][edge], used));
         }
     }
-    for (var joint = 0u; joint < joints; joint++) { warm[(limits_at + joint) * params.envs + env] = limits[joint]; }
+    for (var joint = 0u; joint < joints; joint++) {
+        warm[(limits_at + joint) * params.envs + env] = bitcast<u32>(limits[joint]);
+    }
 }

@@ -1,7 +1,12 @@
-// The compiled model and its settings in words (src/body/tables.rs writes them): a header of section starts
-// and counts,
-// then bodies, joints, degrees of freedom, columns of the packed mass matrix, trees. Real numbers are
-// bit casts. The importing shader binds `tables`.
+// The compiled model and its settings in words (src/body/tables.rs writes them): a header of section starts and
+// counts, then bodies, joints, degrees of freedom, columns of the packed mass matrix, trees, pairs of geoms. Real
+// numbers are bit casts. The importing shader binds `tables`.
+//
+// Bounds of loops are read from here, not from the uniform: lavapipe compiles a shader anew for every launch
+// in which a uniform decides how often a loop runs.
+
+// Degrees of freedom of a world, a multiple of four; Rust refuses more.
+const ALL_DOFS_MOST = 80u;
 
 const NONE = 0xffffffffu;
 
@@ -40,10 +45,8 @@ const BODY_JOINT = 18u;     // first
 const BODY_JOINTS = 19u;    // number
 const BODY_DOF = 20u;
 const BODY_DOFS = 21u;
-const BODY_LAST_DOF = 22u;
-const BODY_TREE = 23u;
-const BODY_MOVERS = 24u;    // 3: a bit for each degree of freedom that moves it
-const BODY = 27u;
+const BODY_MOVERS = 22u;    // 3: a bit for each degree of freedom that moves it
+const BODY = 25u;
 
 // A joint.
 const JOINT_KIND = 0u;
@@ -90,13 +93,9 @@ const PAIR_SOFTNESS = 4u;   // 7
 const PAIR_GEOMS = 11u;     // 2
 const PAIR = 13u;
 
-// Bounds of loops are read from here, not from the uniform: lavapipe compiles a shader anew for every launch
-// in which a uniform decides how often a loop runs.
-//
 // Softness: spring time constant and damping ratio, impedance at depth 0 and at the width, width,
 // midpoint, power.
 
-fn word(at: u32) -> u32 { return tables[at]; }
 fn real(at: u32) -> f32 { return bitcast<f32>(tables[at]); }
 fn real3(at: u32) -> vec3f { return vec3f(real(at), real(at + 1u), real(at + 2u)); }
 fn real4(at: u32) -> vec4f { return vec4f(real3(at), real(at + 3u)); }

@@ -136,6 +136,7 @@ fn round_box(round: Placed, box: Placed) {
     if (rod) {
         arm = inverse * round.turn[2] * round.size.y;
         let near = nearest_of(middle, arm, box.size);
+        if (near.gap == FAR) { return; }
         let second = second_of(arm, near, box.size);
         along = vec2f(near.along, second.x);
         points = select(1u, 2u, second.y != 0.0);

@@ -172,14 +172,6 @@ pub enum Family {
 }
 
 impl Family {
-    pub const ALL: [Family; 5] = [
-        Family::PlaneRound,
-        Family::PlaneBox,
-        Family::RoundRound,
-        Family::RoundBox,
-        Family::BoxBox,
-    ];
-
     /// Of two shapes, the first of which comes first in [`Shape`]. Two planes, which never meet, count as
     /// if the second were round.
     pub fn of(shapes: [Shape; 2]) -> Family {

@@ -9,6 +9,10 @@ use super::model::{Kind, Model, Softness};
 use super::spatial::Spatial;
 use glam::Vec3;
 
+/// The least regularisation, 1/kg: what nothing can move is not divided by zero, and the forces on it are such
+/// that single precision can tell those of opposite edges apart. MuJoCo's, in double precision, is 1e-15.
+const SOFTEST: f32 = 1e-6;
+
 /// Directions of a contact: the normal and two tangents.
 pub const DIRECTIONS: usize = 3;
 
@@ -174,7 +178,7 @@ pub fn limits(
             joint: index,
             row,
             target: -damping * rows.velocity(row, v) - stiffness * impedance * distance,
-            softness: (1.0 - impedance) / impedance * inverse_mass,
+            softness: ((1.0 - impedance) / impedance * inverse_mass).max(SOFTEST),
             force: forces[index],
         });
     }
@@ -233,7 +237,8 @@ pub fn contacts(
             softness: match friction > 0.0 {
                 true => 2.0 * friction * friction * (1.0 + friction * friction) * regular,
                 false => regular,
-            },
+            }
+            .max(SOFTEST),
             forces: warm(key),
         });
     }

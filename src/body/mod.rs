@@ -2,6 +2,7 @@
 //!
 //! - [`model`]: trees of bodies as flat arrays, the way everything below reads them;
 //! - [`mjcf`], [`humanoid`], [`assemble`], [`scenes`]: where models come from;
+//! - [`pose`], [`spatial`], [`looseness`]: what the others compute with;
 //! - [`kinematics`], [`dynamics`], [`factor`], [`drive`]: from a state to accelerations without contact;
 //! - [`collide`], [`constrain`], [`sweep`]: contacts and joint limits, and the forces they take;
 //! - [`integrate`], [`physics`]: a step of one world, from beginning to end;

@@ -208,12 +208,15 @@ impl Model {
     }
 }
 
+/// The least friction of geoms that are not both slippery (MuJoCo's mjMINMU).
+const SLIGHTEST: f32 = 1e-5;
+
 impl Geom {
     /// Friction and softness where two geoms touch.
     pub fn mixed(&self, other: &Geom) -> (f32, Softness) {
         let friction = match self.slippery && other.slippery {
             true => 0.0,
-            false => self.friction.max(other.friction),
+            false => self.friction.max(other.friction).max(SLIGHTEST),
         };
         let mean = |a: f32, b: f32| 0.5 * (a + b);
         let (a, b) = (&self.softness, &other.softness);

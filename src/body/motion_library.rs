@@ -3,7 +3,6 @@
 use super::model::Model;
 use super::motion::BodyMotion;
 use super::retarget::{self, retarget};
-use crate::kernels::rng::uniform01;
 use crate::motion::clip::Clip;
 use crate::motion::error as motion;
 use crate::motion::import::{ImportOptions, import};
@@ -143,13 +142,12 @@ impl MotionLibrary {
         &self.motions
     }
 
-    /// Draws a motion by weight, and a time within it, s, all of which are as likely. `bits` are random
-    /// ([`random4`](crate::kernels::rng::random4)).
-    pub fn sample(&self, bits: [u32; 4]) -> (usize, f32) {
-        let share = uniform01(bits[0]);
+    /// A motion by weight, and a time within it, s, all of which are as likely: of two random numbers, at least 0
+    /// and less than 1.
+    pub fn sample(&self, [share, time]: [f32; 2]) -> (usize, f32) {
         // The last of the shares is one.
         let motion = self.shares.partition_point(|&upto| upto <= share);
-        (motion, uniform01(bits[1]) * self.motions[motion].seconds())
+        (motion, time * self.motions[motion].seconds())
     }
 
     /// Positions and velocities of a motion so many seconds after its first frame.

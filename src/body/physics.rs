@@ -38,7 +38,7 @@ impl Settings {
         Settings {
             dt: 1.0 / STEP_RATE,
             sweeps: 20,
-            slots: SLOTS * model.trees.len().min(2),
+            slots: SLOTS * model.trees.len().clamp(1, 2),
         }
     }
 
@@ -279,7 +279,7 @@ impl Physics {
         unweigh(model, columns, &self.factors, &mut self.smooth);
     }
 
-    /// How limits, contacts found and degrees of freedom move each other.
+    /// How limits, contacts found and degrees of freedom move each other; `rows` end up mass-weighted.
     pub fn constrain(&mut self, state: &State) {
         let (model, dt) = (&self.model, self.settings.dt);
         self.rows.clear();

@@ -40,6 +40,10 @@ pub enum Error {
         body: String,
         kind: &'static str,
     },
+    #[error(
+        "the feet of the model '{model}' have no geom that touches anything: give one to 'right_foot' or 'left_foot'"
+    )]
+    Feet { model: String },
     #[error("the clip '{clip}' has {frames} frames, but a motion needs at least 2")]
     Short { clip: String, frames: usize },
     #[error(

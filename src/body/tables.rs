@@ -90,11 +90,7 @@ fn fits(model: &Model, settings: &Settings) -> Result<(), TooLarge> {
             dofs.unwrap_or(0),
             at::DOFS_MOST,
         ),
-        (
-            "degrees of freedom",
-            model.dofs.len(),
-            4 * solve::QUADS_MOST,
-        ),
+        ("degrees of freedom", model.dofs.len(), at::ALL_DOFS_MOST),
         ("joints", model.joints.len(), solve::JOINTS_MOST),
         ("geoms", model.geoms.len(), contact::GEOMS_MOST),
         ("contacts", settings.slots, solve::SLOTS_MOST),
@@ -119,7 +115,6 @@ fn body(model: &Model, body: &Body) -> Vec<u32> {
     ]));
     words.extend([body.joints.start, body.joints.len()].map(|n| n as u32));
     words.extend([body.dofs.start, body.dofs.len()].map(|n| n as u32));
-    words.extend([index(body.last_dof), body.tree as u32]);
     words.extend(movers(model, body));
     words
 }

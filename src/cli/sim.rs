@@ -79,6 +79,8 @@ pub struct Sim {
     pictures: Option<PathBuf>,
 }
 
+const MOST_WORLDS: usize = 1 << 20;
+
 /// What only random actions know.
 const RANDOM: [&str; 7] = [
     "worlds",
@@ -115,14 +117,23 @@ impl Sim {
         if let (Some(clip), Some(folder)) = (&self.clip, &self.pictures) {
             return self.draw(clip, folder);
         }
-        if self.worlds == 0 || !(self.seconds > 0.0 && self.seconds <= 1e6) {
-            let why = "there is nothing to simulate: --worlds and --seconds must be above zero, and --seconds no more than a million";
+        if !(1..=MOST_WORLDS).contains(&self.worlds) {
+            return Err(Usage(format!("--worlds must be from 1 to {MOST_WORLDS}")).into());
+        }
+        if !(self.seconds > 0.0 && self.seconds <= 1e6) {
+            let why = "--seconds must be above zero and no more than a million";
             return Err(Usage(why.into()).into());
         }
         if !(0.0..=10.0).contains(&self.deviation) {
             return Err(Usage("--deviation must lie between 0 and 10 rad".into()).into());
         }
         let model = Arc::new(self.load()?);
+        if model.dofs.is_empty() {
+            anyhow::bail!(
+                "nothing in the model '{}' can move: give a body a joint",
+                model.name
+            );
+        }
         let device = Device::open(self.device)?;
         let figures = self.measure(model, &device)?;
         match self.json {
@@ -165,18 +176,20 @@ impl Sim {
             watched: Vec::new(),
             model,
         };
+        // Compiles the shaders.
+        let mut simulation = setup.on(device)?;
+        simulation.explore(self.deviation);
+        simulation.step();
+        simulation.tallies()?;
+        drop(simulation);
         let mut simulation = setup.on(device)?;
         let rate = f64::from(STEP_RATE) / SUBSTEPS as f64;
         let steps = (self.seconds * rate).ceil() as u64;
         let line = ProgressBar::new(steps).with_style(ProgressStyle::with_template(
             "{elapsed} {wide_bar} {pos}/{len} actions",
         )?);
-        // The first action compiles shaders.
-        simulation.explore(self.deviation);
-        simulation.step();
-        simulation.tallies()?;
         let begun = Instant::now();
-        for _ in 1..steps {
+        for _ in 0..steps {
             simulation.explore(self.deviation);
             simulation.step();
             line.inc(1);
@@ -184,19 +197,18 @@ impl Sim {
         let tallies = simulation.tallies()?;
         let seconds = begun.elapsed().as_secs_f64();
         line.finish_and_clear();
-        let actions = (steps - 1) * self.worlds as u64;
+        let actions = steps * self.worlds as u64;
         let state = simulation.state()?;
         let per_s = actions as f64 / seconds;
         Ok(Figures {
             device: device.name(),
             threads: rayon::current_num_threads(),
             worlds: self.worlds,
-            control_steps: steps * self.worlds as u64,
+            control_steps: actions,
             control_steps_per_s: per_s,
             real_time: per_s / rate,
             nan_worlds: tallies.broken,
-            contacts_mean: tallies.contacts as f64
-                / (steps * self.worlds as u64 * SUBSTEPS as u64) as f64,
+            contacts_mean: tallies.contacts as f64 / (actions * SUBSTEPS as u64) as f64,
             contacts_max: tallies.most_contacts,
             overflow: tallies.overflow,
             state_hash: format!("{:08x}", crc32fast::hash(bytemuck::cast_slice(&state))),

@@ -237,7 +237,9 @@ pub fn open(config: &mut Config) -> Result<(Device, Arc<Database>)> {
     config.check()?;
     let device = Device::open(config.device)?;
     let observations = config.ppo.batch() * config.task.width();
-    device.holds("observations of an update", observations)?;
+    device
+        .holds("observations of an update", observations)
+        .map_err(|error| anyhow::anyhow!("{error}: use a smaller --envs or ppo.horizon"))?;
     // A resumed run must not change its device because another has appeared.
     config.device = device.choice();
     let (database, notes) = data::load(config.data.as_deref(), config.weights)?;

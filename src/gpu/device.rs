@@ -111,7 +111,7 @@ impl Device {
         let bytes = numbers as u64 * 4;
         match self {
             Device::Gpu(gpu) if bytes > gpu.binding => anyhow::bail!(
-                "the {what} take {} MiB and {} reaches {} MiB of a buffer: use a smaller --envs or ppo.horizon",
+                "the {what} take {} MiB and {} reaches {} MiB of a buffer",
                 bytes.div_ceil(1 << 20),
                 gpu.name,
                 gpu.binding >> 20

@@ -35,7 +35,7 @@ pub fn launch(
     touches: &Buffer<f32>,
     keys: &Buffer<u32>,
     counts: &Buffer<u32>,
-    warm: &Buffer<f32>,
+    warm: &Buffer<u32>,
     watched: &Buffer<u32>,
     forces: &Buffer<f32>,
     tallies: &Buffer<u32>,
@@ -57,7 +57,7 @@ pub fn twin(
     touches: &[f32],
     keys: &[u32],
     counts: &[u32],
-    warm: &[f32],
+    warm: &[u32],
     watched: &[u32],
     forces: &mut [f32],
     tallies: &mut [u32],
@@ -75,8 +75,9 @@ pub fn twin(
             let [first, second] = pair.map(|geom| &model.geoms[geom]);
             let mut touch = [0.0; TOUCH];
             gather(touches, envs, env, slot * TOUCH, &mut touch);
-            let mut edges = [0.0; 4];
+            let mut edges = [0; 4];
             gather(warm, envs, env, slots + 4 * slot, &mut edges);
+            let edges = edges.map(f32::from_bits);
             let (normal, tangent) = (Vec3::from_slice(&touch[3..]), Vec3::from_slice(&touch[6..]));
             let [n, t, s] = along(first.mixed(second).0, &edges);
             let force = normal * n + tangent * t + normal.cross(tangent) * s;

@@ -21,7 +21,7 @@ crate::shader_params! {
 }
 
 /// Numbers of a touch: place, normal, tangent, distance.
-pub const TOUCH: usize = 10;
+pub const TOUCH: usize = at::TOUCH as usize;
 /// Numbers of a constraint.
 pub const CONSTRAINT: usize = at::CONSTRAINT as usize;
 

@@ -8,7 +8,6 @@ crate::shader_params! {
     pub struct Params for explore {
         pub envs: u32,
         /// Driven degrees of freedom of an environment.
-        pub driven: u32,
         /// rad
         pub deviation: f32,
         pub seed: u32,
@@ -18,8 +17,9 @@ crate::shader_params! {
     }
 }
 
-pub fn launch(gpu: &Gpu, targets: &Buffer<f32>, params: &Params) {
-    let groups = groups(&shader::EXPLORE, (params.driven * params.envs) as usize);
+pub fn launch(gpu: &Gpu, driven: usize, targets: &Buffer<f32>, params: &Params) {
+    let [across, ..] = groups(&shader::EXPLORE, params.envs as usize);
+    let groups = [across, driven as u32, 1];
     gpu.launch(&shader::EXPLORE, groups, &[targets], params);
 }
 

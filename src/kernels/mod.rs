@@ -14,7 +14,8 @@
 //! A step of the simulated bodies, in order: [`articulate`] poses, masses and what the drives do, [`contact`] find what
 //! touches, [`constrain`] say how contacts and joint limits resist, [`solve`] find their forces and move on, [`blows`]
 //! sum up who hit whom. Before an action [`explore`] draws random targets; after it [`restart`] begins the worlds anew
-//! that ask for it or broke, and [`proprioception`] says what a character feels of its body.
+//! that ask for it or broke. [`proprioception`] says what a character feels of its body, of the poses and velocities
+//! that [`articulate`], launched on the state as it is then, has found.
 
 pub mod act;
 pub mod arithmetic;

@@ -12,7 +12,7 @@ crate::shader_params! {
     pub struct Params for proprioception {
         pub envs: u32,
         pub characters: u32,
-        /// Numbers of a character.
+        /// Numbers of a character, of all the same.
         pub width: u32,
     }
 }
@@ -22,11 +22,12 @@ pub fn width(model: &Model, tree: usize, keys: usize) -> usize {
     let joints = model.joints.iter();
     let own = joints.filter(|joint| model.bodies[joint.body].tree == tree);
     let numbers = own.map(|joint| match joint.kind {
-        Kind::Free => 1 + 6 + 3 + 3,
+        Kind::Free => 0,
         Kind::Ball => 6 + 3,
         Kind::Hinge => 1 + 1,
     });
-    numbers.sum::<usize>() + 3 * keys
+    // Height, turn, velocity and angular velocity of the root, free or not.
+    1 + 6 + 3 + 3 + numbers.sum::<usize>() + 3 * keys
 }
 
 #[allow(clippy::too_many_arguments)]
@@ -40,6 +41,8 @@ pub fn launch(
     felt: &Buffer<f32>,
     params: &Params,
 ) {
+    let numbers = (params.characters * params.envs * params.width) as usize;
+    assert_eq!(felt.len(), numbers, "what all characters feel");
     gpu.launch(
         &shader::PROPRIOCEPTION,
         groups(

@@ -22,14 +22,16 @@ pub fn launch(
     mask: &Buffer<u32>,
     starts: &Buffer<f32>,
     state: &Buffer<f32>,
-    warm: &Buffer<f32>,
+    warm: &Buffer<u32>,
+    watched: &Buffer<u32>,
+    forces: &Buffer<f32>,
     tallies: &Buffer<u32>,
     params: &Params,
 ) {
     gpu.launch(
         &shader::RESTART,
         groups(&shader::RESTART, params.envs as usize),
-        &[tables, mask, starts, state, warm, tallies],
+        &[tables, mask, starts, state, warm, watched, forces, tallies],
         params,
     );
 }
@@ -41,7 +43,9 @@ pub fn twin(
     mask: &[u32],
     starts: &[f32],
     state: &mut [f32],
-    warm: &mut [f32],
+    warm: &mut [u32],
+    watched: &[u32],
+    forces: &mut [f32],
     tallies: &mut [u32],
     params: &Params,
 ) {
@@ -56,14 +60,16 @@ pub fn twin(
         }
         gather(starts, envs, env, 0, &mut values);
         scatter(state, envs, env, 0, &values);
-        scatter(warm, envs, env, 0, &vec![f32::from_bits(NO_KEY); slots]);
+        scatter(warm, envs, env, 0, &vec![NO_KEY; slots]);
         scatter(
             warm,
             envs,
             env,
             slots,
-            &vec![0.0; 4 * slots + model.joints.len()],
+            &vec![0; 4 * slots + model.joints.len()],
         );
+        let entries = model.bodies.len() + watched[0] as usize;
+        scatter(forces, envs, env, 0, &vec![0.0; 3 * entries]);
     }
 }
 

@@ -36,7 +36,7 @@ pub fn launch(
     constraints: &Buffer<f32>,
     keys: &Buffer<u32>,
     counts: &Buffer<u32>,
-    warm: &Buffer<f32>,
+    warm: &Buffer<u32>,
     params: &Params,
 ) {
     gpu.launch(
@@ -65,7 +65,7 @@ pub fn twin(
     constraints: &[f32],
     keys: &[u32],
     counts: &[u32],
-    warm: &mut [f32],
+    warm: &mut [u32],
     params: &Params,
 ) {
     let (model, envs) = (physics.model.clone(), params.envs as usize);
@@ -131,30 +131,33 @@ pub fn twin(
 }
 
 /// Forces of the step before.
-fn remember(warm: &[f32], envs: usize, env: usize, slots: usize, world: &mut State) {
+fn remember(warm: &[u32], envs: usize, env: usize, slots: usize, world: &mut State) {
     world.keys.clear();
     world.forces.clear();
     for slot in 0..slots {
-        let key = warm[slot * envs + env].to_bits();
+        let key = warm[slot * envs + env];
         if key != NO_KEY {
-            let mut forces = [0.0; 4];
+            let mut forces = [0; 4];
             gather(warm, envs, env, slots + 4 * slot, &mut forces);
             world.keys.push(key);
-            world.forces.push(forces);
+            world.forces.push(forces.map(f32::from_bits));
         }
     }
-    gather(warm, envs, env, 5 * slots, &mut world.limits);
+    let mut limits = vec![0; world.limits.len()];
+    gather(warm, envs, env, 5 * slots, &mut limits);
+    world.limits = limits.into_iter().map(f32::from_bits).collect();
 }
 
 /// Forces of this step.
-fn record(world: &State, warm: &mut [f32], envs: usize, env: usize, slots: usize) {
+fn record(world: &State, warm: &mut [u32], envs: usize, env: usize, slots: usize) {
     for slot in 0..slots {
         let key = world.keys.get(slot).copied().unwrap_or(NO_KEY);
         let forces = world.forces.get(slot).copied().unwrap_or_default();
-        scatter(warm, envs, env, slot, &[f32::from_bits(key)]);
-        scatter(warm, envs, env, slots + 4 * slot, &forces);
+        scatter(warm, envs, env, slot, &[key]);
+        scatter(warm, envs, env, slots + 4 * slot, &forces.map(f32::to_bits));
     }
-    scatter(warm, envs, env, 5 * slots, &world.limits);
+    let limits: Vec<u32> = world.limits.iter().map(|force| force.to_bits()).collect();
+    scatter(warm, envs, env, 5 * slots, &limits);
 }
 
 /// Reads a row, and gives its place among the world's.

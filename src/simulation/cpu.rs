@@ -109,6 +109,7 @@ impl World {
         self.state.q.copy_from_slice(q);
         self.state.v.copy_from_slice(v);
         self.state.cool();
+        self.forces.fill(Vec3::ZERO);
     }
 }
 
@@ -126,6 +127,7 @@ impl Simulation for CpuSimulation {
     }
 
     fn set_targets(&mut self, targets: &[f32]) {
+        self.setup.check_targets(targets);
         let envs = self.setup.envs;
         for (env, world) in self.worlds.iter_mut().enumerate() {
             gather(targets, envs, env, 0, &mut world.targets);
@@ -133,6 +135,7 @@ impl Simulation for CpuSimulation {
     }
 
     fn set_pushes(&mut self, pushes: &[f32]) {
+        self.setup.check_pushes(pushes);
         let envs = self.setup.envs;
         for (env, world) in self.worlds.iter_mut().enumerate() {
             let mut numbers = vec![0.0; 6 * world.pushes.len()];
@@ -151,6 +154,7 @@ impl Simulation for CpuSimulation {
     }
 
     fn restart(&mut self, mask: &[u32], starts: &[f32]) {
+        self.setup.check_starts(mask, starts);
         let envs = self.setup.envs;
         for (env, world) in self.worlds.iter_mut().enumerate() {
             gather(starts, envs, env, 0, &mut world.start);

@@ -27,7 +27,7 @@ pub struct GpuSimulation {
     counts: Buffer<u32>,
     rows: Buffer<f32>,
     constraints: Buffer<f32>,
-    warm: Buffer<f32>,
+    warm: Buffer<u32>,
     forces: Buffer<f32>,
     tallies: Buffer<u32>,
     /// All zero: no world asks to start anew.
@@ -183,6 +183,8 @@ impl GpuSimulation {
             &self.starts,
             &self.state,
             &self.warm,
+            &self.watched,
+            &self.forces,
             &self.tallies,
             &self.setup.restart(),
         );
@@ -190,23 +192,25 @@ impl GpuSimulation {
 }
 
 /// Forces remembered of no step: `warm` of [`solve`].
-fn cold(slots: usize, joints: usize, envs: usize) -> Vec<f32> {
-    let mut warm = vec![0.0; solve::warm(slots, joints) * envs];
-    warm[..slots * envs].fill(f32::from_bits(NO_KEY));
+fn cold(slots: usize, joints: usize, envs: usize) -> Vec<u32> {
+    let mut warm = vec![0; solve::warm(slots, joints) * envs];
+    warm[..slots * envs].fill(NO_KEY);
     warm
 }
 
 impl Simulation for GpuSimulation {
     fn explore(&mut self, deviation: f32) {
         let params = self.setup.explore(deviation, self.clock);
-        explore::launch(&self.gpu, &self.targets, &params);
+        explore::launch(&self.gpu, self.setup.model.driven(), &self.targets, &params);
     }
 
     fn set_targets(&mut self, targets: &[f32]) {
+        self.setup.check_targets(targets);
         self.targets = Buffer::from_slice(&self.gpu, targets);
     }
 
     fn set_pushes(&mut self, pushes: &[f32]) {
+        self.setup.check_pushes(pushes);
         self.pushes = Buffer::from_slice(&self.gpu, pushes);
     }
 
@@ -221,6 +225,7 @@ impl Simulation for GpuSimulation {
     }
 
     fn restart(&mut self, mask: &[u32], starts: &[f32]) {
+        self.setup.check_starts(mask, starts);
         self.starts = Buffer::from_slice(&self.gpu, starts);
         self.begin(&Buffer::from_slice(&self.gpu, mask));
     }

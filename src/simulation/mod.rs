@@ -9,7 +9,7 @@ pub mod gpu;
 use crate::body::model::Model;
 use crate::body::physics::Settings;
 use crate::gpu::Device;
-use crate::kernels::{blows, explore, restart};
+use crate::kernels::{blows, constrain, explore, restart};
 use anyhow::Result;
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ pub struct Tallies {
     pub broken: u64,
 }
 
-/// A batch of worlds on a device.
+/// A batch of worlds on a device. Arrays of another length than is said panic.
 pub trait Simulation {
     /// Draws the drives' targets, normal about zero with `deviation` rad.
     fn explore(&mut self, deviation: f32);
@@ -65,7 +65,8 @@ pub trait Simulation {
     fn state(&self) -> Result<Vec<f32>>;
 
     /// Mean contact forces of the last action, `[(bodies + watched) * 3][envs]`, N in the world's frame:
-    /// on every body, and by the first on the second of every watched pair.
+    /// on every body, and by the first on the second of every watched pair; none in worlds that have started
+    /// anew.
     ///
     /// # Errors
     /// The device was lost.
@@ -90,18 +91,39 @@ impl Setup {
     /// On a device.
     ///
     /// # Errors
-    /// A model too large for the device.
+    /// A model, or a number of worlds, too large for the device.
     pub fn on(&self, device: &Device) -> Result<Box<dyn Simulation>> {
+        let rows = constrain::rows(&self.model, self.settings.slots);
+        let quads = self.model.dofs.len().div_ceil(4);
+        let numbers = 4 * quads * rows * self.envs;
+        device
+            .holds("constraints of all worlds", numbers)
+            .map_err(|error| anyhow::anyhow!("{error}: use fewer worlds"))?;
         Ok(match device {
             Device::Cpu => Box::new(cpu::CpuSimulation::new(self)),
             Device::Gpu(gpu) => Box::new(gpu::GpuSimulation::new(self, gpu)?),
         })
     }
 
+    fn check_targets(&self, targets: &[f32]) {
+        let wanted = self.model.driven() * self.envs;
+        assert_eq!(targets.len(), wanted, "targets of all drives");
+    }
+
+    fn check_pushes(&self, pushes: &[f32]) {
+        let wanted = 6 * self.model.bodies.len() * self.envs;
+        assert_eq!(pushes.len(), wanted, "pushes on all bodies");
+    }
+
+    fn check_starts(&self, mask: &[u32], starts: &[f32]) {
+        assert_eq!(mask.len(), self.envs, "a mask of all worlds");
+        let wanted = (self.model.positions() + self.model.velocities()) * self.envs;
+        assert_eq!(starts.len(), wanted, "starts of all worlds");
+    }
+
     fn explore(&self, deviation: f32, clock: u32) -> explore::Params {
         explore::Params {
             envs: self.envs as u32,
-            driven: self.model.driven() as u32,
             deviation,
             seed: self.seed,
             clock,

@@ -10,6 +10,8 @@ use glam::{Quat, Vec3};
 const GHOST: (Colour, f32) = ([0.80, 0.84, 0.88], 0.75);
 /// Of a turned box, m.
 const ROUNDING: f32 = 0.02;
+/// Most rods beside each other: a box that is larger has gaps.
+const RODS: f32 = 64.0;
 
 /// Turns the bodies' axes, z up, x forward, to the scene's: y up, z forward.
 const UPRIGHT: Quat = Quat::from_xyzw(-0.5, -0.5, -0.5, 0.5);
@@ -82,6 +84,6 @@ fn cuboid(scene: &mut Scene, half: Vec3, pose: &Pose, colour: Colour) {
 
 /// From -`end` to `end`, no further apart than `most`.
 fn steps(end: f32, most: f32) -> impl Iterator<Item = f32> {
-    let count = (2.0 * end / most).ceil().max(1.0);
+    let count = (2.0 * end / most).ceil().clamp(1.0, RODS);
     (0..=count as usize).map(move |step| end * (2.0 * step as f32 / count - 1.0))
 }

@@ -3,6 +3,7 @@
 
 use footwork::body::humanoid::humanoid;
 use footwork::body::kinematics::quaternion;
+use footwork::body::mjcf;
 use footwork::body::model::{Kind, Model};
 use footwork::body::physics::{Physics, SUBSTEPS, Settings, State};
 use footwork::body::scenes;
@@ -10,6 +11,7 @@ use footwork::body::spatial::Spatial;
 use footwork::gpu::Device;
 use footwork::simulation::Setup;
 use glam::{Quat, Vec3};
+use std::path::Path;
 use std::sync::Arc;
 
 const HALF: Vec3 = Vec3::new(0.2, 0.2, 0.9);
@@ -294,6 +296,29 @@ fn a_push_moves_a_body_and_a_restart_takes_it_back() {
         assert!(
             at(&state, 2, 1) != at(&starts, 2, 1),
             "{name}: the others go on"
+        );
+    }
+}
+
+#[test]
+fn contact_with_what_cannot_be_moved_breaks_nothing() {
+    // A wheel whose axle is fastened, pressed into the ground: nothing can push it out.
+    let wheel = r#"<mujoco model="wheel"><worldbody>
+        <geom name="ground" type="plane" size="0 0 1"/>
+        <body name="wheel" pos="0 0 .09">
+          <joint name="axle" axis="0 1 0"/><geom name="wheel" size=".1"/>
+        </body>
+      </worldbody></mujoco>"#;
+    let model = Arc::new(mjcf::parse(wheel, Path::new("wheel.xml")).expect("a model"));
+    let mut physics = Physics::new(model.clone(), Settings::training(&model));
+    let mut state = State::new(&model);
+    state.v[0] = 3.0;
+    for _ in 0..120 {
+        physics.step(&mut state, &[], &[]);
+        assert_eq!(physics.found.keys.len(), 1);
+        assert!(
+            state.q[0].is_finite() && state.v[0].abs() <= 3.0,
+            "{state:?}"
         );
     }
 }

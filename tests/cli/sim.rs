@@ -81,19 +81,31 @@ fn what_cannot_be_simulated_is_said() {
     let place = Place::new();
     place.write("heavy.xml", BALL.replace(r#"mass="1""#, r#"mass="0""#));
     place.write("ball.xml", BALL);
+    place.write("still.xml", STILL);
     for (words, code, part) in [
-        ("--worlds 0", 2, "nothing to simulate"),
+        ("--worlds 0", 2, "--worlds must be from 1 to 1048576"),
         ("--worlds -1", 2, "invalid value '-1'"),
         ("--worlds 99999999999999999999", 2, "invalid value"),
         ("--seed -1", 2, "invalid value '-1'"),
-        ("--seconds -1", 2, "nothing to simulate"),
-        ("--seconds 0", 2, "nothing to simulate"),
-        ("--seconds nan", 2, "nothing to simulate"),
-        ("--seconds 1e9", 2, "nothing to simulate"),
+        ("--seconds -1", 2, "--seconds must be above zero"),
+        ("--seconds 0", 2, "--seconds must be above zero"),
+        ("--seconds nan", 2, "--seconds must be above zero"),
+        ("--seconds 1e9", 2, "--seconds must be above zero"),
         ("--deviation -1", 2, "--deviation must lie between"),
         ("--deviation inf", 2, "--deviation must lie between"),
         ("--scene three", 2, "possible values: one, two, box"),
         ("--device gpux", 2, "similar value exists: 'gpu'"),
+        ("--worlds 18446744073709551615", 2, "from 1 to 1048576"),
+        (
+            "--worlds 1000000 --device lavapipe",
+            1,
+            "constraints of all worlds",
+        ),
+        (
+            "--model still.xml",
+            1,
+            "nothing in the model 'still' can move",
+        ),
         ("--model gone.xml", 1, "cannot read gone.xml"),
         ("--model .", 1, "cannot read ."),
         ("--model heavy.xml", 1, "heavy.xml, line 4"),
@@ -119,6 +131,13 @@ const BALL: &str = r#"<mujoco model="ball">
       <freejoint name="root"/>
       <geom name="ball" size=".1" mass="1"/>
     </body>
+  </worldbody>
+</mujoco>
+"#;
+
+const STILL: &str = r#"<mujoco model="still">
+  <worldbody>
+    <geom name="ground" type="plane" size="1 1 1"/>
   </worldbody>
 </mujoco>
 "#;

@@ -39,7 +39,7 @@ impl<'a> Puppet<'a> {
                 hinge: joint(lower, Kind::Hinge)?,
             })
         };
-        Ok(Puppet {
+        let puppet = Puppet {
             model,
             pelvis: joint("pelvis", Kind::Free)?,
             torso: joint("torso", Kind::Ball)?,
@@ -56,7 +56,12 @@ impl<'a> Puppet<'a> {
                 joint("right_foot", Kind::Ball)?,
                 joint("left_foot", Kind::Ball)?,
             ],
-        })
+        };
+        if puppet.soles().next().is_none() {
+            let model = model.name.clone();
+            return Err(Error::Feet { model });
+        }
+        Ok(puppet)
     }
 
     /// From hip to ankle, m.
@@ -136,11 +141,15 @@ impl<'a> Puppet<'a> {
         }
     }
 
+    /// What the feet can touch the ground with.
+    fn soles(&self) -> impl Iterator<Item = &Geom> {
+        let of = |geom: &&Geom| self.feet.iter().any(|foot| geom.body == Some(foot.body));
+        self.model.geoms.iter().filter(of)
+    }
+
     /// Height of the lowest point of the feet, m.
     fn lowest(&self, poses: &[Pose]) -> f32 {
-        let of = |geom: &&Geom| self.feet.iter().any(|foot| geom.body == Some(foot.body));
-        let geoms = self.model.geoms.iter().filter(of);
-        let heights = geoms.map(|geom| {
+        let heights = self.soles().map(|geom| {
             let body = geom.body.map_or(Pose::default(), |body| poses[body]);
             lowest(geom.shape, body.at(geom.place), body.turn * geom.turn)
         });

@@ -5,7 +5,7 @@ use footwork::body::humanoid::{humanoid, punching_box};
 use footwork::body::kinematics::quaternion;
 use footwork::body::model::Model;
 use footwork::body::motion_library::{Error, MotionLibrary};
-use footwork::kernels::rng::random4;
+use footwork::kernels::rng::{random4, uniform01};
 use footwork::motion::bvh;
 use footwork::motion::clip::Clip;
 use footwork::motion::import::ImportOptions;
@@ -49,7 +49,8 @@ fn motions_are_drawn_by_weight_and_times_evenly() {
         let mut counts = [0u32; 3];
         let mut moments = [[0.0f64; 2]; 3];
         for draw in 0..DRAWS {
-            let (motion, time) = library.sample(random4(5, draw, 0, 1));
+            let bits = random4(5, draw, 0, 1);
+            let (motion, time) = library.sample([bits[0], bits[1]].map(uniform01));
             let part = f64::from(time / library.motions()[motion].seconds());
             assert!((0.0..1.0).contains(&part));
             counts[motion] += 1;
