@@ -44,7 +44,7 @@ def main():
     args = parser.parse_args()
     for name, speed in searches():
         results.report(args.json, f"search, {name}", results.OURS, "queries/s", speed)
-    whole = training(args, "--steps", f"{plane.STEPS}")
+    whole = training(args, "--steps", f"{args.steps}")
     quick = training(args, "--stop-success", f"{plane.SUCCESS}")
     reached = quick["wall_s"] if quick["success"] >= plane.SUCCESS else None
     plane.report(args, results.OURS, whole["steps"] / whole["wall_s"], reached)

@@ -316,7 +316,7 @@ def main():
         learner, success = compiled(motion, learner)
         return float(success)
 
-    outcome = plane.race(learn, lambda: float(judge(motion, learner.parameters)), args.max_time)
+    outcome = plane.race(learn, lambda: float(judge(motion, learner.parameters)), args.steps, args.max_time)
     plane.report(args, "JAX", *outcome)
 
 

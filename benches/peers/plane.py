@@ -23,8 +23,6 @@ HIDDEN, LOG_STD = (32, 32), 0.0
 UPDATES = 5
 LOOK = UPDATES * ENVS * HORIZON
 EPISODES, SUCCESS = 1000, 0.95
-# The whole of a training.
-STEPS = 1_000_000
 # With less success in training there is no need to look.
 NEAR = 0.5
 
@@ -33,20 +31,21 @@ def options(doc):
     parser = argparse.ArgumentParser(description=doc.splitlines()[0])
     parser.add_argument("database")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--steps", type=int, default=1_000_000, help="of the whole training")
     parser.add_argument("--max-time", type=float, default=600, help="seconds of training")
     results.add_option(parser)
     return parser
 
 
-def race(learn, judge, max_time):
-    """Trains for `STEPS`, and on until the evaluation episodes succeed. Returns the steps a second of
+def race(learn, judge, whole, max_time):
+    """Trains for `whole` steps, and on until the evaluation episodes succeed. Returns the steps a second of
     all of it and the seconds until they succeeded, or None.
 
     `learn` takes `LOOK` steps and returns the success in training, `judge` that of the evaluation
     episodes. Only learning is timed; footwork counts its evaluations and checkpoints too.
     """
     steps, seconds, reached = 0, 0.0, None
-    while (reached is None or steps < STEPS) and seconds < max_time:
+    while (reached is None or steps < whole) and seconds < max_time:
         begin = perf_counter()
         trained = learn()
         seconds += perf_counter() - begin
@@ -60,5 +59,5 @@ def race(learn, judge, max_time):
 
 
 def report(args, who, speed, reached):
-    results.report(args.json, f"plane, {STEPS:,} steps", who, "steps/s", speed)
+    results.report(args.json, f"plane, {args.steps:,} steps", who, "steps/s", speed)
     results.report(args.json, f"plane, to {SUCCESS:.0%}", who, "s", reached)

@@ -160,7 +160,7 @@ def main():
         model.learn(plane.LOOK, reset_num_timesteps=False)
         return worlds.successes / max(worlds.episodes, 1)
 
-    outcome = plane.race(learn, lambda: evaluate(model, database, search), args.max_time)
+    outcome = plane.race(learn, lambda: evaluate(model, database, search), args.steps, args.max_time)
     plane.report(args, "Stable-Baselines3", *outcome)
 
 

@@ -192,6 +192,7 @@ impl Sim {
         for _ in 0..steps {
             simulation.explore(self.deviation);
             simulation.step();
+            device.pace()?;
             line.inc(1);
         }
         let tallies = simulation.tallies()?;

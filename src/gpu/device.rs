@@ -120,6 +120,18 @@ impl Device {
         }
     }
 
+    /// Waits for a software adapter, as [`Device::sync`] does, and for no other: where much is asked, the queue to
+    /// it is always full, and for room in there cubecl waits spinning, on a core that the adapter could use.
+    ///
+    /// # Errors
+    /// The device was lost or a kernel failed.
+    pub fn pace(&self) -> anyhow::Result<()> {
+        match self {
+            Device::Gpu(gpu) if gpu.software => self.sync(),
+            _ => Ok(()),
+        }
+    }
+
     /// Waits until everything asked of the device is done.
     ///
     /// # Errors

@@ -64,6 +64,7 @@ pub fn collect(
             let total = (clock()? - start).as_secs_f64();
             acting_share = (acted - seen).as_secs_f64() / total.max(1e-9);
         }
+        device.pace()?;
         observations.push(observation);
         actions.push(action);
         means.push(mean);
