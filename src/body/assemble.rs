@@ -1,6 +1,6 @@
 //! Several models in one world.
 
-use super::kinematics::quaternion;
+use super::kinematics::{quaternion, store};
 use super::mjcf::ordered;
 use super::model::{Body, Dof, Geom, Joint, Kind, Model, Tree};
 use glam::{Quat, Vec3};
@@ -159,7 +159,7 @@ fn start(part: &Part) -> Vec<f32> {
         let q = &mut start[joint.q..];
         let (place, turn) = part.moved(Vec3::from_slice(q), quaternion(&q[3..]));
         q[..3].copy_from_slice(&place.to_array());
-        q[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z]);
+        store(&mut q[3..], turn);
     }
     start
 }

@@ -117,11 +117,7 @@ struct Cuboid {
 
 impl Placed {
     fn of(geom: &Geom, poses: &[Pose]) -> Placed {
-        let own = Pose {
-            place: geom.place,
-            turn: geom.turn,
-        };
-        let pose = geom.body.map_or(own, |body| poses[body] * own);
+        let pose = geom.pose(poses);
         Placed {
             shape: geom.shape,
             place: pose.place,

@@ -259,12 +259,10 @@ fn add_point(
     let arm = point - origin(model, model.bodies[body].tree, q);
     let stride = rows.stride * LANE;
     let values = &mut rows.values.as_flattened_mut()[row * stride..][..DIRECTIONS * stride];
-    let mut next = model.bodies[body].last_dof;
-    while let Some(dof) = next {
+    for dof in model.way(model.bodies[body].last_dof) {
         let motion = axes[dof].at(arm);
         for (k, direction) in directions.iter().enumerate() {
             values[k * stride + dof] += motion.dot(*direction);
         }
-        next = model.dofs[dof].parent;
     }
 }

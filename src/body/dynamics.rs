@@ -82,12 +82,9 @@ pub fn mass_matrix(model: &Model, axes: &[Spatial], inertias: &mut [Inertia], ma
     for (index, body) in model.bodies.iter().enumerate().rev() {
         for dof in body.dofs.clone() {
             let momentum = inertias[index].momentum(axes[dof]);
-            let mut other = Some(dof);
-            let row = &mut matrix[model.dofs[dof].row..][..model.dofs[dof].depth];
-            for entry in row {
-                let along = other.expect("a row is as long as the way to the root");
+            let row = &mut matrix[model.dofs[dof].row..];
+            for (entry, along) in row.iter_mut().zip(model.way(Some(dof))) {
                 *entry = momentum.dot(axes[along]);
-                other = model.dofs[along].parent;
             }
         }
         if let Some(parent) = body.parent {

@@ -10,8 +10,8 @@ use multiversion::multiversion;
 /// For every entry of the packed mass matrix its column: the degree of freedom itself, its parent,
 /// and so on to the root.
 pub fn columns(model: &Model) -> Vec<usize> {
-    let way = |dof| std::iter::successors(Some(dof), |&dof: &usize| model.dofs[dof].parent);
-    (0..model.dofs.len()).flat_map(way).collect()
+    let dofs = 0..model.dofs.len();
+    dofs.flat_map(|dof| model.way(Some(dof))).collect()
 }
 
 /// Turns a packed mass matrix into its factor L, the diagonal inverted.

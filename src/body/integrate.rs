@@ -1,6 +1,6 @@
 //! One step forward: velocities first, then positions with the new velocities (semi-implicit Euler).
 
-use super::kinematics::quaternion;
+use super::kinematics::{quaternion, store};
 use super::model::{Kind, Model};
 use glam::{Quat, Vec3};
 
@@ -34,6 +34,5 @@ pub fn drift(model: &Model, v: &[f32], dt: f32, q: &mut [f32]) {
 #[inline]
 fn turn(q: &mut [f32], v: &[f32], dt: f32) {
     let turned = quaternion(q) * Quat::from_scaled_axis(Vec3::from_slice(v) * dt);
-    let turned = turned.normalize();
-    q.copy_from_slice(&[turned.w, turned.x, turned.y, turned.z]);
+    store(q, turned.normalize());
 }

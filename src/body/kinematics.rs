@@ -11,6 +11,12 @@ pub fn quaternion(q: &[f32]) -> Quat {
     Quat::from_xyzw(q[1], q[2], q[3], q[0])
 }
 
+/// Writes a quaternion where [`quaternion`] reads it.
+#[inline]
+pub fn store(q: &mut [f32], turn: Quat) {
+    q[..4].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z]);
+}
+
 /// The point about which a tree's spatial vectors are taken: where its first body is, if that is
 /// free, else where it is fastened.
 #[inline]

@@ -36,8 +36,7 @@ impl Model {
             let arm = poses[index].at(body.centre) - origin(self, body.tree, &q);
             let along = |direction: Vec3| {
                 let mut row = vec![0.0; dofs];
-                let way = std::iter::successors(body.last_dof, |&dof| self.dofs[dof].parent);
-                for dof in way {
+                for dof in self.way(body.last_dof) {
                     row[dof] = axes[dof].at(arm).dot(direction);
                 }
                 response(&row)

@@ -6,6 +6,7 @@
 //! in `q`, and in `v` its linear velocity in the world's frame and its angular velocity in the
 //! body's; a ball joint a quaternion, and its angular velocity in the body's frame; a hinge its angle.
 
+use super::pose::Pose;
 use glam::{Mat3, Quat, Vec3};
 use std::ops::Range;
 
@@ -184,6 +185,12 @@ impl Model {
         self.dofs.len()
     }
 
+    /// A degree of freedom and those on its way to the root.
+    #[inline]
+    pub fn way(&self, dof: Option<usize>) -> impl Iterator<Item = usize> {
+        std::iter::successors(dof, |&dof| self.dofs[dof].parent)
+    }
+
     /// Entries of the packed mass matrix.
     pub fn packed(&self) -> usize {
         self.dofs.iter().map(|dof| dof.depth).sum()
@@ -212,6 +219,15 @@ impl Model {
 const SLIGHTEST: f32 = 1e-5;
 
 impl Geom {
+    /// In the world, its body's pose being among `poses`, `[bodies]`.
+    pub fn pose(&self, poses: &[Pose]) -> Pose {
+        let own = Pose {
+            place: self.place,
+            turn: self.turn,
+        };
+        self.body.map_or(own, |body| poses[body] * own)
+    }
+
     /// Friction and softness where two geoms touch.
     pub fn mixed(&self, other: &Geom) -> (f32, Softness) {
         let friction = match self.slippery && other.slippery {

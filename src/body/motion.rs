@@ -1,9 +1,8 @@
 //! A recording of the simulated body: its positions and velocities, frame by frame.
 
 use super::drive::rotation_vector;
-use super::kinematics::quaternion;
+use super::kinematics::{quaternion, store};
 use super::model::{Kind, Model};
-use glam::Quat;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyMotion {
@@ -78,11 +77,6 @@ fn turns(model: &Model) -> impl Iterator<Item = usize> {
         Kind::Ball => Some(joint.q),
         Kind::Hinge => None,
     })
-}
-
-/// Writes a quaternion where [`quaternion`] reads it.
-pub fn store(q: &mut [f32], turn: Quat) {
-    q[..4].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z]);
 }
 
 /// The drives' targets that ask for positions, as [`efforts`](super::drive::efforts) reads them.

@@ -258,10 +258,8 @@ impl Physics {
                 angular: push.angular + arm.cross(push.linear),
                 linear: push.linear,
             };
-            let mut next = body.last_dof;
-            while let Some(dof) = next {
+            for dof in self.model.way(body.last_dof) {
                 self.bias[dof] -= self.axes[dof].dot(force);
-                next = self.model.dofs[dof].parent;
             }
         }
     }

@@ -2,7 +2,7 @@
 //! that single precision suffices anywhere (Featherstone, "Rigid Body Dynamics Algorithms", ch. 2).
 
 use glam::{Mat3, Vec3};
-use std::ops::{Add, AddAssign, Mul, Sub};
+use std::ops::{Add, AddAssign, Mul};
 
 /// A motion (angular, linear at the origin) or a force (torque about the origin, force).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,14 +56,6 @@ impl Add for Spatial {
             angular: self.angular + other.angular,
             linear: self.linear + other.linear,
         }
-    }
-}
-
-impl Sub for Spatial {
-    type Output = Spatial;
-    #[inline]
-    fn sub(self, other: Spatial) -> Spatial {
-        self + other * -1.0
     }
 }
 

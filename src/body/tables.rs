@@ -122,8 +122,7 @@ fn body(model: &Model, body: &Body) -> Vec<u32> {
 /// A bit for each degree of freedom that moves a body.
 fn movers(model: &Model, body: &Body) -> [u32; 3] {
     let mut bits = [0; 3];
-    let way = std::iter::successors(body.last_dof, |&dof| model.dofs[dof].parent);
-    for dof in way {
+    for dof in model.way(body.last_dof) {
         bits[dof / 32] |= 1 << (dof % 32);
     }
     bits

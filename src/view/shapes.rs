@@ -31,11 +31,7 @@ pub enum Look {
 /// Adds a model, moved by `aside` (m), to a scene. The ground is the renderer's.
 pub fn draw(scene: &mut Scene, model: &Model, poses: &[Pose], aside: Vec3, look: Look) {
     for geom in &model.geoms {
-        let own = Pose {
-            place: geom.place,
-            turn: geom.turn,
-        };
-        let pose = geom.body.map_or(own, |body| poses[body] * own);
+        let pose = geom.pose(poses);
         let pose = Pose {
             place: seen(pose.place) + aside,
             turn: UPRIGHT * pose.turn,

@@ -221,11 +221,7 @@ fn finds_what_all_pairs_have_one_by_one() {
 }
 
 fn place(geom: &Geom, poses: &[Pose]) -> Placed {
-    let own = Pose {
-        place: geom.place,
-        turn: geom.turn,
-    };
-    let pose = geom.body.map_or(own, |body| poses[body] * own);
+    let pose = geom.pose(poses);
     Placed {
         shape: geom.shape,
         place: pose.place,

@@ -3,9 +3,8 @@
 use super::limb::Bend;
 use super::{Error, Figure, Result};
 use crate::body::drive::rotation_vector;
-use crate::body::kinematics::kinematics;
+use crate::body::kinematics::{kinematics, store};
 use crate::body::model::{Geom, Joint, Kind, Model, Shape};
-use crate::body::motion::store;
 use crate::body::pose::Pose;
 use crate::body::spatial::Spatial;
 use glam::{Mat3, Quat, Vec3};
@@ -150,8 +149,8 @@ impl<'a> Puppet<'a> {
     /// Height of the lowest point of the feet, m.
     fn lowest(&self, poses: &[Pose]) -> f32 {
         let heights = self.soles().map(|geom| {
-            let body = geom.body.map_or(Pose::default(), |body| poses[body]);
-            lowest(geom.shape, body.at(geom.place), body.turn * geom.turn)
+            let pose = geom.pose(poses);
+            lowest(geom.shape, pose.place, pose.turn)
         });
         heights.fold(f32::INFINITY, f32::min)
     }
