@@ -1,8 +1,9 @@
 //! The networks on the CPU, in floating-point operations a second: `cargo bench --bench network`.
 //! Learning takes three times the operations of an answer.
 
-use burn::tensor::{Device, Tensor};
+use burn::tensor::{Device as Tensors, Tensor};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use footwork::gpu::Device;
 use footwork::motion::features::TRAJECTORY;
 use footwork::ppo::rollout::Rollout;
 use footwork::ppo::update::Learner;
@@ -23,8 +24,8 @@ fn network(criterion: &mut Criterion) {
         let config = Config::preset(kind, preset);
         let (mut ppo, width) = (config.ppo, config.task.width());
         (ppo.epochs, ppo.minibatch) = (1, BATCH);
-        let device = Device::flex();
-        let mut learner = Learner::new(&ppo, width, &device, 1).expect("a network that fits");
+        let device = Tensors::flex();
+        let mut learner = Learner::new(&ppo, width, &Device::Cpu, 1).expect("a network that fits");
         let operations = learner.shape.operations() as u64;
         let rollout = rollout(width, &device);
         for threads in [1, 2] {
@@ -52,7 +53,7 @@ fn network(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn rollout(width: usize, device: &Device) -> Rollout {
+fn rollout(width: usize, device: &Tensors) -> Rollout {
     let row = |width| {
         let column = Tensor::arange(0..SAMPLES as i64, device).float();
         let column = column.mul_scalar(0.7).sin();

@@ -9,7 +9,7 @@ use footwork::ppo::rollout;
 use footwork::ppo::update::Learner;
 use footwork::tensors;
 use footwork::train::config::{Config, Kind, Preset};
-use footwork::world::{self, Setup};
+use footwork::world::{Batch, Setup};
 use std::sync::Arc;
 
 /// Bytes that the driver has given, and in how many pieces.
@@ -39,13 +39,12 @@ fn updates_allocate_nothing_on_the_device() {
             seed: 1,
             level: 0,
         };
-        let mut world = world::open(&device, &database, &setup);
-        let mut learner =
-            Learner::new(ppo, task.width(), &device.tensors(), 1).expect("a network that fits");
+        let mut batch = Batch::open(&device, &database, &setup);
+        let mut learner = Learner::new(ppo, task.width(), &device, 1).expect("a network that fits");
         let mut updates = |count: usize| {
             for _ in 0..count {
                 let policy = learner.policy();
-                let rollout = rollout::collect(&mut *world, &policy, &learner.scale, ppo, &device);
+                let rollout = rollout::collect(&mut batch, &policy, &learner.scale, ppo, &device);
                 let losses = learner.update(&rollout.expect("a rollout"), ppo);
                 tensors::read(losses).expect("losses");
             }

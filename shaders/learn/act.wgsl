@@ -10,6 +10,7 @@
 
 struct Params {
     envs: u32,
+    first: u32,
     seed: u32,
     clock: u32,
 }
@@ -29,7 +30,7 @@ fn act(@builtin(global_invocation_id) id: vec3u) {
     if (env >= params.envs) { return; }
     var sum = 0.0;
     for (var i = 0u; i < TRAJECTORY; i++) {
-        let noise = gaussian(random4(params.seed, env, params.clock, NOISE + i));
+        let noise = gaussian(random4(params.seed, params.first + env, params.clock, NOISE + i));
         let at = env * TRAJECTORY + i;
         action[at] = mean[at] + exp(log_std[i]) * noise;
         sum -= 0.5 * noise * noise + log_std[i] + HALF_LOG_TAU;

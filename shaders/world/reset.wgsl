@@ -13,6 +13,7 @@
 
 struct Params {
     envs: u32,
+    first: u32,
     candidates: u32,
     count: u32,
     seed: u32,
@@ -53,15 +54,15 @@ fn reset(@builtin(global_invocation_id) id: vec3u) {
     let envs = params.envs;
     if (env >= envs) { return; }
     if (params.everywhere == 0u && ended[params.offset + env] == RUNNING) { return; }
-    let start = random4(params.seed, env, params.clock, START);
+    let start = random4(params.seed, params.first + env, params.clock, START);
     whole[FRAME * envs + env] = candidates[index_below(start.x, params.candidates)];
     whole[AGE * envs + env] = 0u;
     // At the very start limits are spread, so that not all episodes are truncated at once.
     whole[LIMIT * envs + env] = params.max_steps - index_below(start.y, params.spread);
 
     // A normalised pair of Gaussians points everywhere alike.
-    let east = gaussian(random4(params.seed, env, params.clock, START + 2u));
-    let north = gaussian(random4(params.seed, env, params.clock, START + 3u));
+    let east = gaussian(random4(params.seed, params.first + env, params.clock, START + 2u));
+    let north = gaussian(random4(params.seed, params.first + env, params.clock, START + 3u));
     let length = sqrt(east * east + north * north);
     let heading = select(vec2f(0.0, 1.0), vec2f(east, north) / length, length > 1e-6);
     real[X * envs + env] = 0.0;
@@ -73,7 +74,7 @@ fn reset(@builtin(global_invocation_id) id: vec3u) {
     // clear; the corner after DRAWS tries.
     var target_at = vec2f(params.half_side);
     for (var draw = 0u; draw < DRAWS; draw++) {
-        let bits = random4(params.seed, env, params.clock, TARGET + 4u * (draw + 1u));
+        let bits = random4(params.seed, params.first + env, params.clock, TARGET + 4u * (draw + 1u));
         let tried = (2.0 * vec2f(uniform01(bits.x), uniform01(bits.y)) - 1.0) * params.half_side;
         let far = dot(tried, tried) > params.reach * params.reach;
         if (far && (params.clear == 0u || !obstructed(tried, env))) {

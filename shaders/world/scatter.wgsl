@@ -10,6 +10,7 @@
 
 struct Params {
     envs: u32,
+    first: u32,
     count: u32,
     seed: u32,
     clock: u32,
@@ -41,14 +42,14 @@ fn scatter(@builtin(global_invocation_id) id: vec3u) {
     if (env >= params.envs) { return; }
     if (params.everywhere == 0u && ended[params.offset + env] == RUNNING) { return; }
     let stream = BOXES + 32u * slot;
-    let size = random4(params.seed, env, params.clock, stream);
+    let size = random4(params.seed, params.first + env, params.clock, stream);
     let range = params.side_max - params.side_min;
     let half = 0.5 * (params.side_min + vec2f(uniform01(size.x), uniform01(size.y)) * range);
 
     // Drawn again while it covers the start; the square's corner after TRIES, which is clear.
     var centre = vec2f(params.square);
     for (var tried = 0u; tried < TRIES; tried++) {
-        let bits = random4(params.seed, env, params.clock, stream + PLACE + tried);
+        let bits = random4(params.seed, params.first + env, params.clock, stream + PLACE + tried);
         let place = (2.0 * vec2f(uniform01(bits.x), uniform01(bits.y)) - 1.0) * params.square;
         if (any(abs(place) > half + params.margin)) {
             centre = place;
@@ -57,8 +58,8 @@ fn scatter(@builtin(global_invocation_id) id: vec3u) {
     }
 
     // A normalised pair of Gaussians points everywhere alike.
-    let east = gaussian(random4(params.seed, env, params.clock, stream + DIRECTION));
-    let north = gaussian(random4(params.seed, env, params.clock, stream + DIRECTION + 1u));
+    let east = gaussian(random4(params.seed, params.first + env, params.clock, stream + DIRECTION));
+    let north = gaussian(random4(params.seed, params.first + env, params.clock, stream + DIRECTION + 1u));
     let length = sqrt(east * east + north * north);
     let direction = select(vec2f(0.0, 1.0), vec2f(east, north) / length, length > 1e-6);
     let share = params.speed_min + uniform01(size.z) * (1.0 - params.speed_min);

@@ -46,7 +46,7 @@ fn forward(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Resul
     let shape = Shape::new(&config.ppo.network, width).context("a network")?;
     let time = place.inside(|| -> Result<f64> {
         let tensors = place.device.tensors();
-        let policy = Learner::new(&config.ppo, width, &tensors, 1)?.policy();
+        let policy = Learner::new(&config.ppo, width, &place.device, 1)?.policy();
         let observation = Tensor::<2>::ones([envs, width], &tensors);
         seconds(place, || {
             let _ = policy.mean(observation.clone());
@@ -82,7 +82,7 @@ fn update(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Result
     let shape = Shape::new(&ppo.network, width).context("a network")?;
     let time = place.inside(|| -> Result<f64> {
         let tensors = place.device.tensors();
-        let mut learner = Learner::new(ppo, width, &tensors, 1)?;
+        let mut learner = Learner::new(ppo, width, &place.device, 1)?;
         let rollout = noise(ppo.batch(), width, &tensors);
         seconds(place, || {
             read(learner.update(&rollout, ppo))?;

@@ -7,7 +7,7 @@ use crate::ppo::rollout;
 use crate::ppo::update::Learner;
 use crate::tensors;
 use crate::train::config::{Config, Kind, Preset};
-use crate::world::{self, Setup};
+use crate::world::{Batch, Setup};
 use anyhow::Result;
 
 pub fn measure(bench: &Bench, record: &mut Record) -> Result<()> {
@@ -58,12 +58,12 @@ fn update(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Result
         level: 0,
     };
     let time = place.inside(|| -> Result<f64> {
-        let mut world = world::open(&place.device, bench.database, &setup);
-        let mut learner = Learner::new(ppo, task.width(), &place.device.tensors(), 1)?;
+        let mut batch = Batch::open(&place.device, bench.database, &setup);
+        let mut learner = Learner::new(ppo, task.width(), &place.device, 1)?;
         seconds(place, || {
             let policy = learner.policy();
             let rollout =
-                rollout::collect(&mut *world, &policy, &learner.scale, ppo, &place.device)?;
+                rollout::collect(&mut batch, &policy, &learner.scale, ppo, &place.device)?;
             tensors::read(learner.update(&rollout, ppo))?;
             Ok(())
         })

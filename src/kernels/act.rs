@@ -8,6 +8,8 @@ use crate::motion::features::TRAJECTORY;
 crate::shader_params! {
     pub struct Params for act {
         pub envs: u32,
+        /// The first one's number in its batch: random numbers are drawn by it.
+        pub first: u32,
         pub seed: u32,
         /// Steps of the run so far: the random numbers' counter.
         pub clock: u32,
@@ -45,7 +47,12 @@ pub fn twin(
     for (env, log_prob) in log_prob.iter_mut().enumerate().take(params.envs as usize) {
         let mut sum = 0.0;
         for i in 0..TRAJECTORY {
-            let bits = random4(params.seed, env as u32, params.clock, NOISE + i as u32);
+            let bits = random4(
+                params.seed,
+                params.first + env as u32,
+                params.clock,
+                NOISE + i as u32,
+            );
             let noise = gaussian(bits);
             let at = env * TRAJECTORY + i;
             action[at] = mean[at] + std[i] * noise;

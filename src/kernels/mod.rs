@@ -11,6 +11,10 @@
 //! [`gae`] judges the actions and [`tally`] sums up the episodes. [`bandwidth`] and [`arithmetic`] measure
 //! what a device could do.
 //!
+//! A gradient step of networks of dense layers, in order: [`take`] what was observed, [`forward`] through the layers,
+//! [`mod@loss`] what is wrong with the answers, [`backward`] through the layers, [`mod@gradient`] of the parameters,
+//! [`total`] of its pieces, and [`adam`] steps against it. [`network`] says how they lie in memory.
+//!
 //! A step of the simulated bodies, in order: [`articulate`] poses, masses and what the drives do, [`contact`] find what
 //! touches, [`constrain`] say how contacts and joint limits resist, [`solve`] find their forces and move on, [`blows`]
 //! sum up who hit whom. Before an action [`explore`] draws random targets; after it [`restart`] begins the worlds anew
@@ -18,8 +22,10 @@
 //! that [`articulate`], launched on the state as it is then, has found.
 
 pub mod act;
+pub mod adam;
 pub mod arithmetic;
 pub mod articulate;
+pub mod backward;
 pub mod bandwidth;
 pub mod blows;
 pub mod collide;
@@ -27,10 +33,14 @@ pub mod columns;
 pub mod constrain;
 pub mod contact;
 pub mod explore;
+pub mod forward;
 pub mod gae;
+pub mod gradient;
 pub mod hits;
 pub mod index;
 pub mod layout;
+pub mod loss;
+pub mod network;
 pub mod observe;
 pub mod obstacles;
 pub mod proprioception;
@@ -49,5 +59,7 @@ pub mod search_wide;
 pub mod sense;
 pub mod solve;
 pub mod step;
+pub mod take;
 pub mod tally;
+pub mod total;
 pub mod wander;

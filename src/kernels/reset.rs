@@ -9,6 +9,8 @@ use crate::gpu::{Buffer, Gpu, shader};
 crate::shader_params! {
     pub struct Params for reset {
         pub envs: u32,
+        /// The first one's number in its batch: random numbers are drawn by it.
+        pub first: u32,
         pub candidates: u32,
         /// Obstacles of an environment.
         pub count: u32,
@@ -65,7 +67,7 @@ pub fn twin(
         if params.everywhere == 0 && ended[params.offset as usize + env] == end::RUNNING {
             continue;
         }
-        let draw = |stream| random4(params.seed, env as u32, params.clock, stream);
+        let draw = |stream| random4(params.seed, params.first + env as u32, params.clock, stream);
         let [first, early, ..] = draw(START);
         let start = index_below(first, params.candidates);
         whole[whole::FRAME * envs + env] = candidates[start as usize];

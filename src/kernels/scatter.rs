@@ -8,6 +8,8 @@ use crate::gpu::{Buffer, Gpu, shader};
 crate::shader_params! {
     pub struct Params for scatter {
         pub envs: u32,
+        /// The first one's number in its batch: random numbers are drawn by it.
+        pub first: u32,
         /// Obstacles of an environment.
         pub count: u32,
         pub seed: u32,
@@ -56,7 +58,7 @@ pub fn twin(ended: &[u32], boxes: &mut [f32], drift: &mut [f32], params: &Params
         for slot in 0..count {
             let draw = |stream| {
                 let stream = BOXES + 32 * slot as u32 + stream;
-                random4(params.seed, env as u32, params.clock, stream)
+                random4(params.seed, params.first + env as u32, params.clock, stream)
             };
             let size = draw(0);
             let range = params.side_max - params.side_min;

@@ -2,6 +2,7 @@
 //! itself and keys its state by random names; one vector makes the norm of the whole gradient a
 //! single operation on the device and the state two plain arrays of a checkpoint.
 
+use crate::kernels::adam;
 use crate::tensors::sum;
 use burn::tensor::{Device, Tensor};
 use multiversion::multiversion;
@@ -43,7 +44,7 @@ impl Adam {
             gradient
         };
         self.steps += 1;
-        let steps = self.steps.min(i32::MAX as u64) as i32;
+        let [rate, unbias] = unbiased(self.steps, rate);
         self.first = self
             .first
             .clone()
@@ -54,16 +55,31 @@ impl Adam {
             .clone()
             .mul_scalar(BETA_2)
             .add(gradient.square().mul_scalar(1.0 - BETA_2));
-        let first = self
-            .first
-            .clone()
-            .mul_scalar(rate / (1.0 - BETA_1.powi(steps)));
-        let second = self
-            .second
-            .clone()
-            .mul_scalar(1.0 / (1.0 - BETA_2.powi(steps)));
+        let first = self.first.clone().mul_scalar(rate);
+        let second = self.second.clone().mul_scalar(unbias);
         parameters.sub(first.div(second.sqrt().add_scalar(EPSILON)))
     }
+
+    /// What the next step is launched with.
+    pub(super) fn next(&mut self, parameters: usize, rate: f64, max_norm: f64) -> adam::Params {
+        self.steps += 1;
+        let [rate, unbias] = unbiased(self.steps, rate).map(|factor| factor as f32);
+        adam::Params {
+            parameters: parameters as u32,
+            rate,
+            unbias,
+            max_norm: max_norm as f32,
+        }
+    }
+}
+
+/// Learning rate and factor of the second moment that make up for moments that began at zero.
+fn unbiased(steps: u64, rate: f64) -> [f64; 2] {
+    let steps = steps.min(i32::MAX as u64) as i32;
+    [
+        rate / (1.0 - BETA_1.powi(steps)),
+        1.0 / (1.0 - BETA_2.powi(steps)),
+    ]
 }
 
 fn clip(gradient: Tensor<1>, max_norm: f64) -> Tensor<1> {
@@ -97,11 +113,9 @@ pub fn step(
         true => (max_norm / (norm + 1e-6)).min(1.0) as f32,
         false => 1.0,
     };
-    let steps = steps.min(i32::MAX as u64) as i32;
     let [keep_1, keep_2] = [BETA_1, BETA_2].map(|beta| beta as f32);
     let [take_1, take_2] = [BETA_1, BETA_2].map(|beta| (1.0 - beta) as f32);
-    let rate = (rate / (1.0 - BETA_1.powi(steps))) as f32;
-    let unbias = (1.0 / (1.0 - BETA_2.powi(steps))) as f32;
+    let [rate, unbias] = unbiased(steps, rate).map(|factor| factor as f32);
     let moments = first.iter_mut().zip(second.iter_mut());
     for ((parameter, gradient), (first, second)) in parameters.iter_mut().zip(gradient).zip(moments)
     {

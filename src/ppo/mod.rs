@@ -6,6 +6,7 @@
 //! critic's targets near one. On the CPU [`native`] does what burn's tensors do elsewhere.
 
 pub mod adam;
+mod launched;
 pub mod layer;
 pub mod loss;
 pub mod native;

@@ -4,12 +4,13 @@ use super::Ppo;
 use super::policy::Policy;
 use super::scale::Scale;
 use crate::gpu::Device;
-use crate::world::{Values, World};
+use crate::world::{Batch, Values, World};
 use anyhow::Result;
 use burn::tensor::Tensor;
+use rayon::prelude::*;
 use std::time::Instant;
 
-/// One rollout, `[horizon * envs]` rows, time-major.
+/// One rollout, `[horizon * envs]` rows: part after part of the batch, each time-major.
 pub struct Rollout {
     pub observation: Tensor<2>,
     pub action: Tensor<2>,
@@ -29,11 +30,55 @@ pub struct Rollout {
     pub simulate_s: f64,
 }
 
-/// Steps all worlds `horizon` times.
+impl Rollout {
+    /// One after another.
+    fn join(mut parts: Vec<Rollout>) -> Rollout {
+        if parts.len() == 1 {
+            return parts.remove(0);
+        }
+        fn joined<const D: usize>(parts: &[Rollout], of: fn(&Rollout) -> &Tensor<D>) -> Tensor<D> {
+            Tensor::cat(parts.iter().map(|part| of(part).clone()).collect(), 0)
+        }
+        let seconds = |of: fn(&Rollout) -> f64| parts.iter().map(of).sum();
+        Rollout {
+            observation: joined(&parts, |part| &part.observation),
+            action: joined(&parts, |part| &part.action),
+            mean: joined(&parts, |part| &part.mean),
+            log_prob: joined(&parts, |part| &part.log_prob),
+            value: joined(&parts, |part| &part.value),
+            advantage: joined(&parts, |part| &part.advantage),
+            target: joined(&parts, |part| &part.target),
+            log_std: parts[0].log_std.clone(),
+            act_s: seconds(|part| part.act_s),
+            simulate_s: seconds(|part| part.simulate_s),
+        }
+    }
+}
+
+/// Steps all worlds `horizon` times, the batch's parts one after another or at once. Their seconds
+/// are shares of the time that all took together.
 ///
 /// # Errors
 /// The device was lost.
 pub fn collect(
+    batch: &mut Batch,
+    policy: &Policy,
+    scale: &Scale,
+    config: &Ppo,
+    device: &Device,
+) -> Result<Rollout> {
+    let begin = Instant::now();
+    let parts = batch.parts.par_iter_mut();
+    let parts = parts.map(|world| play(&mut **world, policy, scale, config, device));
+    let mut rollout = Rollout::join(parts.collect::<Result<_>>()?);
+    let share = begin.elapsed().as_secs_f64() / (rollout.act_s + rollout.simulate_s);
+    rollout.act_s *= share;
+    rollout.simulate_s *= share;
+    Ok(rollout)
+}
+
+/// Steps worlds `horizon` times.
+fn play(
     world: &mut dyn World,
     policy: &Policy,
     scale: &Scale,

@@ -2,17 +2,19 @@
 
 use super::Ppo;
 use super::adam::Adam;
+use super::launched;
 use super::loss::{self, LOSSES, Terms};
 use super::native::descent::Descent;
 use super::network::Shape;
-use super::policy::{Policy, on_cpu};
+use super::policy::Policy;
 use super::rollout::Rollout;
 use super::scale::Scale;
 use super::study::Study;
+use crate::gpu::Device;
 use crate::kernels::rng::permutation;
 use crate::tensors::{mean, values, vector};
 use anyhow::Context;
-use burn::tensor::{Device, Int, Tensor, TensorData};
+use burn::tensor::{Int, Tensor, TensorData};
 
 /// Everything that learns, on one device.
 pub struct Learner {
@@ -25,6 +27,17 @@ pub struct Learner {
     pub kl_coefficient: f64,
     pub updates: u64,
     seed: u32,
+    way: Way,
+}
+
+/// What takes the gradient steps.
+enum Way {
+    /// Kernels of our own on the CPU.
+    Native,
+    /// Our own on a GPU, where all layers are dense.
+    Launched(Box<launched::Descent>),
+    /// burn's, elsewhere.
+    Tensors,
 }
 
 /// Means over the last pass of an update.
@@ -66,10 +79,19 @@ impl Learner {
     pub fn new(config: &Ppo, width: usize, device: &Device, seed: u32) -> anyhow::Result<Self> {
         let shape = Shape::new(&config.network, width)
             .context("a filter of ppo.network.convolutions is larger than what it sees")?;
-        let parameters = vector(&shape.init(seed, config.log_std), device);
+        let tensors = device.tensors();
+        let way = match device {
+            Device::Cpu => Way::Native,
+            Device::Gpu(gpu) => match launched::Descent::new(gpu, &tensors, &shape, config) {
+                Some(descent) => Way::Launched(Box::new(descent)),
+                None => Way::Tensors,
+            },
+        };
+        let parameters = vector(&shape.init(seed, config.log_std), &tensors);
         Ok(Learner {
-            adam: Adam::new(shape.parameters(), device),
-            scale: Scale::new(device),
+            adam: Adam::new(shape.parameters(), &tensors),
+            scale: Scale::new(&tensors),
+            way,
             shape,
             parameters,
             learning_rate: config.learning_rate,
@@ -89,9 +111,10 @@ impl Learner {
         let explained = explained_variance(&rollout.target, &rollout.value, &self.scale);
         let batch = self.pack(rollout);
         let old_log_std = &rollout.log_std;
-        let sums = match on_cpu(&self.parameters.device()) {
-            true => self.descend_natively(batch, old_log_std, config),
-            false => self.descend_in_tensors(batch, old_log_std, config),
+        let sums = match self.way {
+            Way::Native => self.descend_natively(batch, old_log_std, config),
+            Way::Launched(_) => self.descend_by_launches(batch, old_log_std, config),
+            Way::Tensors => self.descend_in_tensors(batch, old_log_std, config),
         };
         self.updates += 1;
         let samples = rollout.value.dims()[0] as f64;
@@ -137,19 +160,16 @@ impl Learner {
         old_log_std: &Tensor<1>,
         config: &Ppo,
     ) -> Tensor<1> {
-        let (samples, device) = (batch.dims()[0], batch.device());
+        let samples = batch.dims()[0];
         let mut sums = Vec::new();
         for epoch in 0..config.epochs {
-            let order = self.shuffled(epoch, samples);
-            let order = order.into_iter().map(|i| i as i32).collect::<Vec<_>>();
-            let order = Tensor::<1, Int>::from_data(TensorData::new(order, [samples]), &device);
-            let batch = batch.clone().select(0, order);
+            let batch = self.reordered(epoch, &batch);
             sums.clear();
             for start in (0..samples).step_by(config.minibatch) {
                 let length = config.minibatch.min(samples - start);
                 let minibatch = batch.clone().narrow(0, start, length);
                 let study = Study::new(&self.shape, &self.parameters);
-                let terms = self.terms(config, length);
+                let terms = terms(config, self.kl_coefficient, length);
                 let (gradient, losses) = loss::gradient(&study, minibatch, old_log_std, &terms);
                 self.parameters = self.adam.step(
                     self.parameters.clone(),
@@ -161,6 +181,32 @@ impl Learner {
             }
         }
         Tensor::stack::<2>(sums, 0).sum_dim(0).squeeze_dim(0)
+    }
+
+    /// The same by launches of our own.
+    fn descend_by_launches(
+        &mut self,
+        batch: Tensor<2>,
+        old_log_std: &Tensor<1>,
+        config: &Ppo,
+    ) -> Tensor<1> {
+        let Way::Launched(descent) = &self.way else {
+            unreachable!("asked for where there is none")
+        };
+        let moving = descent.begin(&self.parameters, &self.adam);
+        let kl_coefficient = self.kl_coefficient;
+        for epoch in 0..config.epochs {
+            let batch = self.reordered(epoch, &batch);
+            descent.pass(
+                &moving,
+                batch,
+                old_log_std,
+                &mut self.adam,
+                [self.learning_rate, config.max_gradient],
+                |samples| terms(config, kl_coefficient, samples),
+            );
+        }
+        descent.end(moving, &mut self.parameters, &mut self.adam)
     }
 
     /// The same on the CPU.
@@ -187,7 +233,7 @@ impl Learner {
             for order in order.chunks(config.minibatch) {
                 let row = |&i: &u32| &batch[i as usize * width..][..width];
                 let rows: Vec<&[f32]> = order.iter().map(row).collect();
-                let terms = self.terms(config, rows.len());
+                let terms = terms(config, self.kl_coefficient, rows.len());
                 let losses = descent.step(&self.shape, &rows, &old_log_std, &terms);
                 sums = std::array::from_fn(|i| sums[i] + losses[i]);
             }
@@ -205,15 +251,14 @@ impl Learner {
         permutation(self.seed, self.updates as u32, stream, samples)
     }
 
-    fn terms(&self, config: &Ppo, samples: usize) -> Terms {
-        Terms {
-            clip: config.clip,
-            value_clip: config.value_clip,
-            value_coefficient: config.value_coefficient,
-            entropy_coefficient: config.entropy_coefficient,
-            kl_coefficient: self.kl_coefficient,
-            share: 1.0 / samples as f32,
-        }
+    /// A batch in that order.
+    fn reordered(&self, epoch: usize, batch: &Tensor<2>) -> Tensor<2> {
+        let samples = batch.dims()[0];
+        let order = self.shuffled(epoch, samples).into_iter();
+        let order: Vec<i32> = order.map(|i| i as i32).collect();
+        let order = TensorData::new(order, [samples]);
+        let order = Tensor::<1, Int>::from_data(order, &batch.device());
+        batch.clone().select(0, order)
     }
 
     /// Adapts learning rate and KL penalty to the KL divergence of the last update.
@@ -242,6 +287,18 @@ impl Learner {
                 self.kl_coefficient *= 0.5;
             }
         }
+    }
+}
+
+/// Of a minibatch of so many samples.
+fn terms(config: &Ppo, kl_coefficient: f64, samples: usize) -> Terms {
+    Terms {
+        clip: config.clip,
+        value_clip: config.value_clip,
+        value_coefficient: config.value_coefficient,
+        entropy_coefficient: config.entropy_coefficient,
+        kl_coefficient,
+        share: 1.0 / samples as f32,
     }
 }
 

@@ -258,13 +258,9 @@ fn nearest(index: &Index, frames: &[u32], queries: &[[f32; PADDED]], found: &mut
     // Then sixteen groups after sixteen, for all queries, while they are at hand.
     for (at, outer) in outer.chunks_exact(asked.len()).enumerate() {
         for (i, bounds) in outer.iter().enumerate() {
-            // Not the other way round: a bound that is no number skips nothing.
-            if all_beyond(bounds, best[i].limit) {
-                continue;
-            }
-            for (lane, &bound) in bounds.iter().enumerate() {
+            for lane in Within::of(bounds, best[i].limit) {
                 let group = at * LANES + lane;
-                if bound > best[i].limit || near[i].iter().any(|near| near.1 == group) {
+                if bounds[lane] > best[i].limit || near[i].iter().any(|near| near.1 == group) {
                     continue;
                 }
                 visit(&index.tree, group, &asked[i], &mut best[i]);
@@ -276,12 +272,27 @@ fn nearest(index: &Index, frames: &[u32], queries: &[[f32; PADDED]], found: &mut
     }
 }
 
-/// Whether no bound lets anything through, told without a branch for each.
-#[inline(always)]
-fn all_beyond(bounds: &[f32; LANES], limit: f32) -> bool {
-    bounds
-        .iter()
-        .fold(true, |all, &bound| all & (bound > limit))
+/// The lanes whose bounds let something through, a byte each: found without a branch for every lane.
+struct Within(u128);
+
+impl Within {
+    #[inline(always)]
+    fn of(bounds: &[f32; LANES], limit: f32) -> Self {
+        // Not the other way round: a bound that is no number skips nothing.
+        let within = bounds.map(|bound| u8::from(bound > limit) ^ 1);
+        Within(u128::from_le_bytes(within))
+    }
+}
+
+impl Iterator for Within {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let lane = self.0.trailing_zeros() as usize / 8;
+        self.0 &= self.0.wrapping_sub(1);
+        (lane < LANES).then_some(lane)
+    }
 }
 
 /// Puts a group where it belongs among the nearest, the last of which it displaces.
@@ -299,12 +310,13 @@ fn visit(tree: &Tree, group: usize, asked: &Asked, best: &mut Best) {
         return;
     };
     let mut inner = bounds(boxes, &asked.trajectory, asked.poses.to_leaves(group));
-    if all_beyond(&inner, best.limit) {
+    if Within::of(&inner, best.limit).0 == 0 {
         return;
     }
     asked.poses.raise(group, asked.query, &mut inner);
-    for (lane, bound) in inner.into_iter().enumerate() {
-        if bound > best.limit {
+    for lane in Within::of(&inner, best.limit) {
+        // The best may have come nearer since.
+        if inner[lane] > best.limit {
             continue;
         }
         let leaf = group * LANES + lane;

@@ -1,6 +1,7 @@
 //! A run at one moment, complete: it goes on from here as if it had never stopped.
 
 use super::config::Config;
+use crate::gpu::Device;
 use crate::kernels::layout::{AXES, MAP_WORDS, boxes, real, whole};
 use crate::ppo::Ppo;
 use crate::ppo::adam::Adam;
@@ -10,7 +11,6 @@ use crate::ppo::update::Learner;
 use crate::store::{Arrays, Format, StoreError};
 use crate::tensors::{read, vector};
 use crate::world::{Snapshot, Task};
-use burn::tensor::Device;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -107,6 +107,7 @@ impl Checkpoint {
     pub fn learner(&self, config: &Ppo, device: &Device) -> anyhow::Result<Learner> {
         let header = &self.header;
         let mut learner = Learner::new(config, header.observation, device, header.seed)?;
+        let device = &device.tensors();
         learner.parameters = vector(&self.parameters, device);
         learner.adam = Adam {
             first: vector(&self.first_moment, device),

@@ -17,7 +17,7 @@ use crate::ppo::update::{Learner, Losses};
 use crate::tensors;
 use crate::world::curriculum::Curriculum;
 use crate::world::watched::Watched;
-use crate::world::{self, Setup, Tally, Task, World};
+use crate::world::{Batch, Setup, Tally, Task};
 use anyhow::{Context, Result, bail};
 use burn::tensor::Tensor;
 use serde::{Deserialize, Serialize};
@@ -124,7 +124,7 @@ struct Run<'a> {
     folder: &'a Folder,
     database: &'a Arc<Database>,
     device: &'a Device,
-    world: Box<dyn World>,
+    batch: Batch,
     learner: Learner,
     memory: Memory,
     rows: Vec<Row>,
@@ -155,7 +155,7 @@ pub fn train(
     rayon::scope(|_| {
         let mut run = Run::open(config, folder, database, device, from)?;
         if let Some(watch) = watch {
-            Watch::leave(&watch.worlds, run.world.watch()?);
+            Watch::leave(&watch.worlds, run.batch.watch()?);
         }
         let stopped_by = run.advance(interrupted, watch);
         let outcome = stopped_by.and_then(|by| {
@@ -185,10 +185,10 @@ impl<'a> Run<'a> {
             seed: config.seed,
             level: memory.curriculum.level(),
         };
-        let mut world = world::open(device, database, &setup);
+        let mut batch = Batch::open(device, database, &setup);
         let (mut steps, mut earlier_s) = (0, 0.0);
         let learner = match from {
-            None => Learner::new(ppo, width, &device.tensors(), config.seed)?,
+            None => Learner::new(ppo, width, device, config.seed)?,
             Some(checkpoint) => {
                 let (envs, frames) = (ppo.envs, database.frames());
                 let shown = &checkpoint.header.world.whole[whole::FRAME * envs..][..envs];
@@ -197,10 +197,10 @@ impl<'a> Run<'a> {
                         "the checkpoint shows frame {frame} of a database of {frames}: it is damaged"
                     );
                 }
-                world.restore(&checkpoint.header.world);
+                batch.restore(&checkpoint.header.world);
                 (steps, earlier_s) = (checkpoint.header.steps, checkpoint.header.wall_s);
                 memory = checkpoint.header.memory.clone();
-                checkpoint.learner(ppo, &device.tensors())?
+                checkpoint.learner(ppo, device)?
             }
         };
         let rows = if steps > 0 {
@@ -213,7 +213,7 @@ impl<'a> Run<'a> {
             folder,
             database,
             device,
-            world,
+            batch,
             learner,
             memory,
             recorder: Recorder::open(folder.path(), &rows)?,
@@ -270,7 +270,7 @@ impl<'a> Run<'a> {
         let start = Instant::now();
         let policy = self.learner.policy();
         let rollout = rollout::collect(
-            &mut *self.world,
+            &mut self.batch,
             &policy,
             &self.learner.scale,
             ppo,
@@ -279,7 +279,7 @@ impl<'a> Run<'a> {
         let losses = self.learner.update(&rollout, ppo);
         // The one read-back of an update. The parameters' sum shows whether the last step broke them.
         let parameters = tensors::sum(self.learner.parameters.clone());
-        let numbers = Tensor::cat(vec![losses, self.world.tally(), parameters], 0);
+        let numbers = Tensor::cat(vec![losses, self.batch.tally(), parameters], 0);
         let numbers = tensors::read(numbers)?;
         self.steps += ppo.batch() as u64;
         if let Some(place) = numbers.iter().position(|number| !number.is_finite()) {
@@ -299,7 +299,7 @@ impl<'a> Run<'a> {
         if let Task::Obstacles(task) = &self.config.task
             && self.memory.curriculum.advance(&tally, task, ppo.envs)
         {
-            self.world.set_level(self.memory.curriculum.level());
+            self.batch.set_level(self.memory.curriculum.level());
         }
         self.learner.adapt(losses.kl, self.steps, ppo);
         Ok(row)
@@ -398,7 +398,7 @@ impl<'a> Run<'a> {
             rates: [self.learner.learning_rate, self.learner.kl_coefficient],
             adam_steps: self.learner.adam.steps,
             scale_updates: self.learner.scale.updates,
-            world: self.world.snapshot()?,
+            world: self.batch.snapshot()?,
             memory: self.memory.clone(),
         };
         Ok(Checkpoint::take(header, &self.learner)?.save(path)?)

@@ -8,11 +8,10 @@ use crate::gpu::shader::{DRAW_CROWD, DRAW_CROWD_BLOCKS};
 use crate::motion::database::Database;
 use crate::playback::Shown;
 use crate::world::Task;
-use crate::world::watched::{State, Watched};
+use crate::world::watched::{States, Watched};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use rayon::prelude::*;
-use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Between two environments' origins on the plane, and between two squares of obstacles, m.
@@ -35,7 +34,7 @@ struct Params {
 
 /// A state on the host and its copies on the device.
 struct Copied {
-    state: Arc<Mutex<State>>,
+    states: States,
     real: wgpu::Buffer,
     whole: wgpu::Buffer,
     boxes: Option<wgpu::Buffer>,
@@ -143,7 +142,7 @@ impl Crowd {
     /// Takes over the latest state, if it is kept on the host.
     pub fn refresh(&self, queue: &wgpu::Queue) {
         if let Some(copied) = &self.copied {
-            let state = copied.state.lock().unwrap_or_else(PoisonError::into_inner);
+            let state = copied.states.now();
             queue.write_buffer(&copied.real, 0, bytemuck::cast_slice(&state.real));
             queue.write_buffer(&copied.whole, 0, bytemuck::cast_slice(&state.whole));
             if let Some(boxes) = &copied.boxes {
@@ -192,16 +191,16 @@ impl Shape {
 }
 
 fn copied(watched: &Watched, buffer: impl Fn(&[u8]) -> wgpu::Buffer) -> Option<Copied> {
-    let Watched::Cpu(state) = watched else {
+    let Watched::Cpu(states) = watched else {
         return None;
     };
-    let now = state.lock().unwrap_or_else(PoisonError::into_inner);
+    let now = states.now();
     let boxes = bytemuck::cast_slice(&now.boxes);
     Some(Copied {
         real: buffer(bytemuck::cast_slice(&now.real)),
         whole: buffer(bytemuck::cast_slice(&now.whole)),
         boxes: (!boxes.is_empty()).then(|| buffer(boxes)),
-        state: state.clone(),
+        states: states.clone(),
     })
 }
 

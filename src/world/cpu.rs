@@ -1,7 +1,8 @@
-//! A batch of worlds on the CPU: the twins, with the pruned search in place of the plain one.
+//! Worlds on the CPU: the twins, with the pruned search in place of the plain one.
 
 use super::rules::Rules;
-use super::watched::{State, Watched};
+use super::snapshot::gather;
+use super::watched::{State, States, Watched};
 use super::{Setup, Snapshot, Values, World};
 use crate::kernels::layout::{AXES, MAP_WORDS, boxes, real, whole};
 use crate::kernels::obstacles::inside;
@@ -51,7 +52,16 @@ impl CpuWorld {
     /// Worlds at the start of an episode; the limits of these first episodes are up to `spread`
     /// early.
     pub fn new(database: Arc<Database>, setup: &Setup, spread: u32) -> Self {
-        let (envs, rules) = (setup.envs, setup.rules(&database));
+        Self::part(database, setup, 0, spread)
+    }
+
+    /// The same, of a larger batch: the first of these worlds is its number `first`.
+    pub fn part(database: Arc<Database>, setup: &Setup, first: usize, spread: u32) -> Self {
+        let envs = setup.envs;
+        let rules = Rules {
+            first,
+            ..setup.rules(&database)
+        };
         let count = setup.task.obstacles();
         let mut world = CpuWorld {
             index: database.index(),
@@ -227,17 +237,6 @@ impl CpuWorld {
     }
 }
 
-/// Rows of `width` values of the environments `envs`, from all `[..][old][width]`.
-fn gather<T: Copy>(all: &[T], old: usize, width: usize, envs: &[usize]) -> Vec<T> {
-    let mut kept = Vec::with_capacity(all.len() / old * envs.len());
-    for field in all.chunks_exact((old * width).max(1)) {
-        for &env in envs {
-            kept.extend_from_slice(&field[env * width..][..width]);
-        }
-    }
-    kept
-}
-
 impl World for CpuWorld {
     fn observe(&mut self) -> Tensor<2> {
         let shape = [self.rules.envs, self.rules.task.width()];
@@ -326,7 +325,7 @@ impl World for CpuWorld {
         state.set(&self.real, &self.whole, &self.boxes);
         let state = Arc::new(Mutex::new(state));
         self.watched = Some(state.clone());
-        Ok(Watched::Cpu(state))
+        Ok(Watched::Cpu(States(vec![state])))
     }
 
     fn restore(&mut self, snapshot: &Snapshot) {

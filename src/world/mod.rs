@@ -2,9 +2,10 @@
 //!
 //! [`task`] says what is asked of the character, [`curriculum`] how its difficulty rises, [`rules`]
 //! turns it into the kernels' parameters;
-//! [`gpu`] and [`cpu`] step a batch of worlds by the shaders or by their twins, behind the one trait
-//! [`World`].
+//! [`gpu`] and [`cpu`] step worlds by the shaders or by their twins, behind the one trait [`World`];
+//! [`batch`] holds those of a training.
 
+pub mod batch;
 pub mod brute;
 pub mod cpu;
 pub mod curriculum;
@@ -12,15 +13,18 @@ pub mod gpu;
 pub mod indexed;
 pub mod rules;
 pub mod search;
+pub mod snapshot;
 pub mod task;
 pub mod watched;
 
 use crate::gpu::Device;
 use crate::kernels::tally;
 use crate::motion::database::Database;
+pub use batch::Batch;
 use burn::tensor::Tensor;
 use rules::Rules;
 use serde::{Deserialize, Serialize};
+pub use snapshot::Snapshot;
 use std::sync::Arc;
 pub use task::{LEVELS, Obstacles, Plane, Task};
 use watched::Watched;
@@ -68,6 +72,7 @@ impl Setup {
         Rules {
             task: self.task,
             envs: self.envs,
+            first: 0,
             horizon: self.horizon,
             candidates: database.candidates.len(),
             seed: self.seed,
@@ -75,29 +80,14 @@ impl Setup {
             level: self.level,
         }
     }
-}
 
-/// Everything a batch of worlds needs to go on as if never stopped.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Snapshot {
-    /// Steps so far: the counter of the random numbers.
-    pub clock: u32,
-    pub level: u32,
-    /// `[real::FIELDS][envs]`
-    #[serde(skip)]
-    pub real: Vec<f32>,
-    /// `[whole::FIELDS][envs]`
-    #[serde(skip)]
-    pub whole: Vec<u32>,
-    /// `[envs][boxes::FIELDS][count]`
-    #[serde(skip)]
-    pub boxes: Vec<f32>,
-    /// `[envs][AXES][count]`
-    #[serde(skip)]
-    pub drift: Vec<f32>,
-    /// `[envs][MAP_WORDS]`
-    #[serde(skip)]
-    pub maps: Vec<u32>,
+    /// Steps by which the limits of the first episodes differ at most.
+    fn spread(&self) -> u32 {
+        match self.task {
+            Task::Plane(plane) => plane.max_steps,
+            Task::Obstacles(_) => 0,
+        }
+    }
 }
 
 /// What the learner needs to judge a rollout, `[horizon * envs]` each and `[envs]` for the ends.
@@ -112,8 +102,8 @@ pub struct Values {
     pub scale: Tensor<1>,
 }
 
-/// A batch of worlds. Tensors stay on the device the worlds live on.
-pub trait World {
+/// Worlds that are stepped together. Tensors stay on the device the worlds live on.
+pub trait World: Send {
     /// Observations `[envs, width]`.
     fn observe(&mut self) -> Tensor<2>;
 
@@ -151,15 +141,11 @@ pub trait World {
     fn restore(&mut self, snapshot: &Snapshot);
 }
 
-/// A batch of worlds on `device`, all at the start of an episode. On the plane these first episodes
+/// Worlds on `device`, all at the start of an episode. On the plane these first episodes
 /// have limits of all lengths, so that not all are truncated at once.
 pub fn open(device: &Device, database: &Arc<Database>, setup: &Setup) -> Box<dyn World> {
-    let spread = match setup.task {
-        Task::Plane(plane) => plane.max_steps,
-        Task::Obstacles(_) => 0,
-    };
     match device {
-        Device::Cpu => Box::new(cpu::CpuWorld::new(database.clone(), setup, spread)),
-        Device::Gpu(gpu) => Box::new(gpu::GpuWorld::new(gpu, database, setup, spread)),
+        Device::Cpu => Box::new(cpu::CpuWorld::new(database.clone(), setup, setup.spread())),
+        Device::Gpu(gpu) => Box::new(gpu::GpuWorld::new(gpu, database, setup, setup.spread())),
     }
 }

@@ -13,6 +13,8 @@ use crate::motion::features::PLAYED;
 pub struct Rules {
     pub task: Task,
     pub envs: usize,
+    /// The first one's number in its batch.
+    pub first: usize,
     /// Steps of a rollout.
     pub horizon: usize,
     /// Candidates of the database.
@@ -41,6 +43,7 @@ impl Rules {
     pub fn act(&self) -> act::Params {
         act::Params {
             envs: self.envs as u32,
+            first: self.first as u32,
             seed: self.seed,
             clock: self.clock,
         }
@@ -168,6 +171,7 @@ impl Rules {
         };
         scatter::Params {
             envs: self.envs as u32,
+            first: self.first as u32,
             count: task.count,
             seed: self.seed,
             clock: self.draws(everywhere),
@@ -193,6 +197,7 @@ impl Rules {
         };
         reset::Params {
             envs: self.envs as u32,
+            first: self.first as u32,
             candidates: self.candidates as u32,
             count: self.task.obstacles() as u32,
             seed: self.seed,

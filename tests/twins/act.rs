@@ -27,6 +27,7 @@ impl Case {
             log_std,
             params: act::Params {
                 envs: envs as u32,
+                first: draw.below(1000) as u32,
                 seed,
                 clock: draw.bits()[0],
             },

@@ -5,6 +5,7 @@
 //! The tests need a software Vulkan adapter (lavapipe) and fail without one.
 
 mod act;
+mod batch;
 mod bodies;
 mod ceiling;
 mod checked;
@@ -16,6 +17,7 @@ mod ground;
 mod hits;
 mod inputs;
 mod keep;
+mod learning;
 mod observe;
 mod obstacles;
 mod oracle;

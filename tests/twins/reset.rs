@@ -38,6 +38,7 @@ impl Case {
         Case {
             params: reset::Params {
                 envs: envs as u32,
+                first: 3,
                 candidates: candidates.len() as u32,
                 seed,
                 clock: draw.bits()[0],

@@ -201,6 +201,7 @@ fn weights(task: Obstacles) -> step::Params {
     let rules = Rules {
         task: Task::Obstacles(task),
         envs: ENVS,
+        first: 0,
         horizon: 8,
         candidates: 1,
         seed: 0,

@@ -30,6 +30,7 @@ impl Case {
             ended: ends,
             params: scatter::Params {
                 envs: envs as u32,
+                first: 3,
                 count: count as u32,
                 seed,
                 clock: draw.bits()[0],

@@ -1,0 +1,111 @@
+//! PPO's loss of every sample and its gradient. Shader: `shaders/learn/loss.wgsl`.
+
+use super::network::{Plan, SUMS};
+use crate::gpu::kernel::groups;
+use crate::gpu::{Buffer, Gpu, shader};
+use crate::motion::features::TRAJECTORY;
+
+crate::shader_params! {
+    pub struct Params for loss {
+        pub rows: u32,
+        /// The minibatch's first sample.
+        pub start: u32,
+        /// Numbers of a sample.
+        pub width: u32,
+        /// The choices that make up the loss: see [`crate::ppo::Ppo`].
+        pub clip: f32,
+        pub value_clip: f32,
+        pub value_coefficient: f32,
+        pub entropy_coefficient: f32,
+        pub kl_coefficient: f32,
+        /// Of a sample in the mean.
+        pub share: f32,
+    }
+}
+
+const HALF_LOG_TAU: f32 = 0.918_938_5;
+
+pub fn launch(
+    gpu: &Gpu,
+    plan: &Buffer<u32>,
+    samples: &Buffer<f32>,
+    parameters: &Buffer<f32>,
+    old_log_std: &Buffer<f32>,
+    rows: &Buffer<f32>,
+    slopes: &Buffer<f32>,
+    params: &Params,
+) {
+    let groups = groups(&shader::LOSS, params.rows as usize);
+    let buffers: [&dyn crate::gpu::buffer::Argument; 6] =
+        [plan, samples, parameters, old_log_std, rows, slopes];
+    gpu.launch(&shader::LOSS, groups, &buffers, params);
+}
+
+pub fn twin(
+    plan: &Plan,
+    samples: &[f32],
+    parameters: &[f32],
+    old_log_std: &[f32],
+    rows: &[f32],
+    slopes: &mut [f32],
+    params: &Params,
+) {
+    let [.., actor, critic, judged] = &plan.places[..] else {
+        unreachable!("there are two networks, and what the loss adds up");
+    };
+    let [mean, value, judged] = [actor, critic, judged].map(|place| place.above as usize);
+    let pitch = plan.head.pitch as usize;
+    let log_std = &parameters[plan.head.parameters as usize - TRAJECTORY..];
+    let samples = samples.chunks_exact(params.width as usize);
+    let samples = samples
+        .skip(params.start as usize)
+        .take(params.rows as usize);
+    let rows = rows.chunks_exact(pitch).zip(slopes.chunks_exact_mut(pitch));
+    for (sample, (row, slopes)) in samples.zip(rows) {
+        let learned = &sample[sample.len() - 2 * TRAJECTORY - 4..];
+        let (action, learned) = learned.split_at(TRAJECTORY);
+        let (old_mean, learned) = learned.split_at(TRAJECTORY);
+        let [old_log_prob, advantage, target, old_value] = std::array::from_fn(|i| learned[i]);
+        let away = |from: &[f32], i: usize| (from[i] - row[mean + i]) * (-log_std[i]).exp();
+
+        let (mut log_ratio, mut kl, mut entropy) = (-old_log_prob, 0.0, 0.0);
+        for i in 0..TRAJECTORY {
+            let (noise, moved) = (away(action, i), away(old_mean, i));
+            let spread = old_log_std[i] - log_std[i];
+            log_ratio -= 0.5 * noise * noise + log_std[i] + HALF_LOG_TAU;
+            kl += 0.5 * (moved * moved + (2.0 * spread).exp() - 1.0) - spread;
+            entropy += log_std[i] + 0.5 + HALF_LOG_TAU;
+        }
+        let ratio = log_ratio.exp();
+        let clipped = ratio.clamp(1.0 - params.clip, 1.0 + params.clip);
+        // Where the clipped one is less, nothing depends on the ratio.
+        let passes = ratio * advantage <= clipped * advantage;
+        let pull = if passes { -advantage * ratio } else { 0.0 };
+        for i in 0..TRAJECTORY {
+            let (noise, moved) = (away(action, i), away(old_mean, i));
+            let doubled = (2.0 * (old_log_std[i] - log_std[i])).exp();
+            let by_mean = pull * noise - params.kl_coefficient * moved;
+            slopes[mean + i] = by_mean * (-log_std[i]).exp() * params.share;
+            let by_noise = pull * (noise * noise - 1.0);
+            let by_kl = params.kl_coefficient * (1.0 - doubled - moved * moved);
+            slopes[judged + i] = (by_noise + by_kl - params.entropy_coefficient) * params.share;
+        }
+
+        let error = row[value] - target;
+        let step = row[value] - old_value;
+        let limit = params.value_clip;
+        let near = error - step + step.clamp(-limit, limit);
+        // Where the limited change counts, nothing depends on the value.
+        let limited = limit > 0.0 && step.abs() > limit && near * near > error * error;
+        let slope = error * params.value_coefficient * params.share;
+        slopes[value] = if limited { 0.0 } else { slope };
+        let sums: [f32; SUMS] = [
+            -(ratio * advantage).min(clipped * advantage),
+            0.5 * if limited { near * near } else { error * error },
+            entropy,
+            kl,
+            f32::from(ratio != clipped),
+        ];
+        slopes[judged + TRAJECTORY..][..SUMS].copy_from_slice(&sums);
+    }
+}

@@ -1,0 +1,109 @@
+//! How policy and critic, all of dense layers, lie in memory while they learn on a GPU: what
+//! `shaders/shared/network.wgsl` says, which [`take`](super::take), [`forward`](super::forward),
+//! [`loss`](super::loss), [`backward`](super::backward), [`gradient`](super::gradient),
+//! [`total`](super::total) and [`adam`](super::adam) read.
+
+use crate::gpu::shader::gradient::constants as wgsl;
+use bytemuck::{Pod, Zeroable};
+
+/// Rows, or inputs, that an invocation computes at once.
+pub const BLOCK: usize = 8;
+/// What the loss adds up besides the gradient with respect to `log_std`: surrogate, value loss,
+/// entropy, KL divergence, samples out of the clip range.
+pub const SUMS: usize = 5;
+/// Numbers a workgroup of `total` adds up.
+pub const GROUP: usize = 64;
+
+const _: () = assert!(
+    wgsl::BLOCK as usize == BLOCK && wgsl::SUMS as usize == SUMS && wgsl::GROUP as usize == GROUP
+);
+
+/// A layer.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Place {
+    pub inputs: u32,
+    pub outputs: u32,
+    /// Where in the parameters its weights `[inputs][outputs]` begin; its biases follow.
+    pub weights: u32,
+    /// Columns of what comes in and goes out.
+    pub below: u32,
+    pub above: u32,
+    /// 1: tanh of the sums. 0: the sums.
+    pub bent: u32,
+}
+
+/// What does not depend on the layer.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Head {
+    /// Samples.
+    pub rows: u32,
+    /// Numbers of a row: what is observed, then what comes out of every layer, the actor's before
+    /// the critic's, then what the loss adds up.
+    pub pitch: u32,
+    /// Rows are added up in so many pieces of `piece`.
+    pub pieces: u32,
+    pub piece: u32,
+    pub parameters: u32,
+    /// Of `places`.
+    pub count: u32,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    pub head: Head,
+    /// Layer by layer, the actor's before the critic's; last one without inputs, for what the loss
+    /// adds up: the gradient with respect to `log_std`, and [`SUMS`].
+    pub places: Vec<Place>,
+}
+
+impl Plan {
+    /// As shaders read it.
+    pub fn words(&self) -> Vec<u32> {
+        let mut words = bytemuck::cast_slice(&[self.head]).to_vec();
+        words.extend_from_slice(bytemuck::cast_slice(&self.places));
+        words
+    }
+
+    /// Where each parameter stands when weights are `[outputs][inputs]`.
+    pub fn turned(&self) -> Vec<u32> {
+        let mut turned: Vec<u32> = (0..self.head.parameters).collect();
+        for place in &self.places {
+            for input in 0..place.inputs {
+                for output in 0..place.outputs {
+                    let from = place.weights + input * place.outputs + output;
+                    turned[from as usize] = place.weights + output * place.inputs + input;
+                }
+            }
+        }
+        turned
+    }
+
+    /// Rows, filled up to whole blocks.
+    pub fn room(&self) -> usize {
+        (self.head.rows as usize).next_multiple_of(BLOCK)
+    }
+
+    /// Workgroups of an invocation for each of the most inputs or outputs of some places, and each
+    /// block of rows.
+    pub(super) fn groups(&self, places: &[Place], wide: impl Fn(&Place) -> u32) -> [u32; 3] {
+        let widest = places.iter().map(wide).max().unwrap_or(0);
+        let blocks = self.head.rows.div_ceil(BLOCK as u32);
+        [widest.div_ceil(32), blocks, places.len() as u32]
+    }
+}
+
+impl Place {
+    /// Inputs, outputs, where the weights begin, columns below and above.
+    pub(super) fn sizes(&self) -> [usize; 5] {
+        [
+            self.inputs,
+            self.outputs,
+            self.weights,
+            self.below,
+            self.above,
+        ]
+        .map(|size| size as usize)
+    }
+}
