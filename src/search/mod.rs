@@ -352,7 +352,7 @@ fn bounds(boxes: &Boxes, asked: &[f32; TRAJECTORY], poses: [f32; LANES]) -> [f32
 /// Squared distances to sixteen rows, in the four interleaved sums of
 /// [`squared`](crate::kernels::search_exact::squared).
 #[inline(always)]
-fn distances(rows: &Lanes, query: &[f32; PADDED]) -> [f32; LANES] {
+fn distances(Lanes(rows): &Lanes, query: &[f32; PADDED]) -> [f32; LANES] {
     let mut sums = [[0.0; LANES]; 4];
     for quad in 0..FEATURE / 4 {
         for (i, sum) in sums.iter_mut().enumerate() {

@@ -87,7 +87,7 @@ fn rows(index: &Index) -> Vec<[f32; PADDED]> {
     let tree = &index.tree;
     let row = |leaf: usize, lane: usize| -> [f32; PADDED] {
         std::array::from_fn(|d| match d {
-            0..FEATURE => tree.leaves[leaf][d][lane],
+            0..FEATURE => tree.leaves[leaf].0[d][lane],
             _ => tree.ids[leaf][lane] as f32,
         })
     };

@@ -25,6 +25,7 @@ pub struct Poses {
 }
 
 /// Sixteen boxes around poses.
+#[repr(align(64))]
 struct Boxes {
     low: [[f32; LANES]; POSE],
     high: [[f32; LANES]; POSE],
@@ -328,7 +329,7 @@ impl Around {
         }
     }
 
-    fn leaf(leaf: &Lanes) -> Self {
+    fn leaf(Lanes(leaf): &Lanes) -> Self {
         let mut around = Self::nothing();
         for (dimension, lanes) in leaf.iter().enumerate().take(POSE) {
             lanes.iter().for_each(|&value| around.add(dimension, value));
@@ -385,7 +386,7 @@ fn codes(
         let mut least = [f32::INFINITY; LANES];
         for frame in frames {
             let mut sum = [0.0f32; LANES];
-            for (&value, lanes) in frame.iter().zip(&leaves[lane][..POSE]) {
+            for (&value, lanes) in frame.iter().zip(&leaves[lane].0[..POSE]) {
                 for (sum, &row) in sum.iter_mut().zip(lanes) {
                     let difference = row - value;
                     *sum = difference.mul_add(difference, *sum);

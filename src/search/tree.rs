@@ -14,11 +14,15 @@ const GROUP: usize = LANES * LANES;
 const POSE_SHARE: f32 = 0.5;
 
 /// Sixteen feature rows, dimension by dimension. Lanes without a row hold infinity: never nearest.
-pub type Lanes = [[f32; LANES]; FEATURE];
+/// Sixteen numbers fill a line of a cache, and none lies across two.
+#[repr(align(64))]
+#[derive(Clone, Copy)]
+pub struct Lanes(pub [[f32; LANES]; FEATURE]);
 /// Corners of sixteen boxes, axis by axis.
 pub type Corners = [[f32; LANES]; TRAJECTORY];
 
 /// Sixteen boxes around trajectories, along the principal axes.
+#[repr(align(64))]
 pub struct Boxes {
     pub low: Corners,
     pub high: Corners,
@@ -60,13 +64,13 @@ impl Tree {
             order
         });
         let groups = rows.len().div_ceil(GROUP);
-        let mut leaves = vec![[[f32::INFINITY; LANES]; FEATURE]; groups * LANES];
+        let mut leaves = vec![Lanes([[f32::INFINITY; LANES]; FEATURE]); groups * LANES];
         let mut ids = vec![[u32::MAX; LANES]; groups * LANES];
         let mut corners = vec![NOTHING; groups * LANES];
         for (at, &id) in order.iter().enumerate() {
             let (leaf, lane) = (at / LANES, at % LANES);
             ids[leaf][lane] = id;
-            for (lanes, value) in leaves[leaf].iter_mut().zip(rows[id as usize]) {
+            for (lanes, value) in leaves[leaf].0.iter_mut().zip(rows[id as usize]) {
                 lanes[lane] = value;
             }
             let place = &keys[id as usize][POSE..];
