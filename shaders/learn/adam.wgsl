@@ -31,8 +31,8 @@ struct Params {
 @group(0) @binding(7) var<storage, read_write> second: array<f32>;
 @group(0) @binding(8) var<uniform> params: Params;
 
-const KEEP_1 = 0.9;
-const KEEP_2 = 0.999;
+const BETA_1 = 0.9;
+const BETA_2 = 0.999;
 const EPSILON = 1e-5;
 
 @compute @workgroup_size(64)
@@ -44,8 +44,8 @@ fn adam(@builtin(global_invocation_id) id: vec3u) {
     for (var group = 0u; group < groups; group++) { square += squares[group]; }
     let cut = select(1.0, min(1.0, params.max_norm / (sqrt(square) + 1e-6)), params.max_norm > 0.0);
     let slope = gradient[i] * cut;
-    let mean = KEEP_1 * first[i] + (1.0 - KEEP_1) * slope;
-    let spread = KEEP_2 * second[i] + (1.0 - KEEP_2) * slope * slope;
+    let mean = BETA_1 * first[i] + (1.0 - BETA_1) * slope;
+    let spread = BETA_2 * second[i] + (1.0 - BETA_2) * slope * slope;
     let moved = parameters[i] - params.rate * mean / (sqrt(spread * params.unbias) + EPSILON);
     first[i] = mean;
     second[i] = spread;

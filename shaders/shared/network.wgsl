@@ -1,9 +1,9 @@
 // Policy and critic, all of dense layers, side by side; a minibatch on its way through them.
 //
-// A sample is a row of `pitch` numbers: what is observed, then the activations of every layer, the
-// actor's before the critic's. In a second array of that form stand the gradients with respect to
-// them, and behind those what the loss adds up: the gradient with respect to log_std, then SUMS
-// sums.
+// Rows are samples in blocks of BLOCK: [blocks][pitch][BLOCK]. A row is what is observed, once for each
+// network, then the activations of every layer, the actor's before the critic's. In a second array of that
+// form stand the gradients with respect to them, and behind those what the loss adds up: the gradient
+// with respect to log_std, then SUMS sums.
 
 struct Place {
     // Numbers that come in and go out.
@@ -21,7 +21,7 @@ struct Place {
 struct Plan {
     rows: u32,
     pitch: u32,
-    // The rows are added up in so many pieces of `piece` rows.
+    // The rows are added up in so many pieces of `piece` blocks.
     pieces: u32,
     piece: u32,
     parameters: u32,
@@ -32,5 +32,7 @@ struct Plan {
 }
 
 const BLOCK = 8u;   // rows, or inputs, an invocation computes at once: each fetch serves so many
+const HALVES = 2u;  // vec4 of a block
+const LANES = 32u;  // invocations of a workgroup, each with an output or an input of a layer
 const SUMS = 5u;    // surrogate, value loss, entropy, KL divergence, samples out of the clip range
 const GROUP = 64u;  // numbers a workgroup of `total` adds up

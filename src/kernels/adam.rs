@@ -16,9 +16,10 @@ crate::shader_params! {
     }
 }
 
-const KEEP_1: f32 = 0.9;
-const KEEP_2: f32 = 0.999;
-const EPSILON: f32 = 1e-5;
+/// Kingma and Ba's, but for the last.
+pub const BETA_1: f64 = 0.9;
+pub const BETA_2: f64 = 0.999;
+pub const EPSILON: f64 = 1e-5;
 
 pub fn launch(
     gpu: &Gpu,
@@ -55,11 +56,12 @@ pub fn twin(
         true => (params.max_norm / (norm + 1e-6)).min(1.0),
         false => 1.0,
     };
+    let [keep_1, keep_2, epsilon] = [BETA_1, BETA_2, EPSILON].map(|constant| constant as f32);
     for i in 0..params.parameters as usize {
         let slope = gradient[i] * cut;
-        first[i] = KEEP_1 * first[i] + (1.0 - KEEP_1) * slope;
-        second[i] = KEEP_2 * second[i] + (1.0 - KEEP_2) * slope * slope;
-        parameters[i] -= params.rate * first[i] / ((second[i] * params.unbias).sqrt() + EPSILON);
+        first[i] = keep_1 * first[i] + (1.0 - keep_1) * slope;
+        second[i] = keep_2 * second[i] + (1.0 - keep_2) * slope * slope;
+        parameters[i] -= params.rate * first[i] / ((second[i] * params.unbias).sqrt() + epsilon);
         turned[place[i] as usize] = parameters[i];
     }
 }

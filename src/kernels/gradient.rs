@@ -1,7 +1,7 @@
 //! The gradient with respect to all parameters over each piece of a minibatch. Shader:
 //! `shaders/learn/gradient.wgsl`.
 
-use super::network::{BLOCK, Place, Plan, SUMS};
+use super::network::{BLOCK, LANES, Place, Plan, SUMS};
 use crate::gpu::{Buffer, Gpu, shader};
 
 crate::shader_params! {
@@ -14,7 +14,7 @@ crate::shader_params! {
 pub fn groups(plan: &Plan) -> [u32; 3] {
     let most = |of: fn(&Place) -> u32| plan.places.iter().map(of).max().unwrap_or(0);
     [
-        most(|place| place.outputs).div_ceil(32),
+        most(|place| place.outputs).div_ceil(LANES),
         most(|place| place.inputs).div_ceil(BLOCK as u32) + 1,
         plan.head.pieces * plan.head.count,
     ]
@@ -35,23 +35,19 @@ pub fn launch(
 }
 
 pub fn twin(plan: &Plan, rows: &[f32], slopes: &[f32], partials: &mut [f32], params: &Params) {
-    let [pitch, piece, all] =
-        [plan.head.pitch, plan.head.piece, plan.head.rows].map(|n| n as usize);
+    let (piece, all) = (plan.head.piece as usize * BLOCK, plan.blocks() * BLOCK);
     let numbers = params.parameters as usize + SUMS;
-    let pieces = rows[..all * pitch]
-        .chunks(piece * pitch)
-        .zip(slopes.chunks(piece * pitch));
-    for ((rows, slopes), partial) in pieces.zip(partials.chunks_exact_mut(numbers)) {
+    for (at, partial) in partials.chunks_exact_mut(numbers).enumerate() {
         for place in &plan.places {
             let [inputs, outputs, weights, below, above] = place.sizes();
             let sums = &mut partial[weights..][..(inputs + 1) * outputs];
             sums.fill(0.0);
-            for (row, slopes) in rows.chunks_exact(pitch).zip(slopes.chunks_exact(pitch)) {
+            for row in at * piece..all.min((at + 1) * piece) {
                 // A bias is the weight of an input that is always one.
-                let inputs = row[below..][..inputs].iter().chain(&[1.0]);
-                for (input, sums) in inputs.zip(sums.chunks_exact_mut(outputs)) {
-                    for (sum, slope) in sums.iter_mut().zip(&slopes[above..]) {
-                        *sum += input * slope;
+                let inputs = (0..inputs).map(|input| rows[plan.at(row, below + input)]);
+                for (input, sums) in inputs.chain([1.0]).zip(sums.chunks_exact_mut(outputs)) {
+                    for (output, sum) in sums.iter_mut().enumerate() {
+                        *sum += input * slopes[plan.at(row, above + output)];
                     }
                 }
             }

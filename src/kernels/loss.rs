@@ -1,6 +1,6 @@
 //! PPO's loss of every sample and its gradient. Shader: `shaders/learn/loss.wgsl`.
 
-use super::network::{Plan, SUMS};
+use super::network::{BLOCK, Plan, SUMS};
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::features::TRAJECTORY;
@@ -31,13 +31,16 @@ pub fn launch(
     samples: &Buffer<f32>,
     parameters: &Buffer<f32>,
     old_log_std: &Buffer<f32>,
-    rows: &Buffer<f32>,
+    answers: &Buffer<f32>,
     slopes: &Buffer<f32>,
     params: &Params,
 ) {
-    let groups = groups(&shader::LOSS, params.rows as usize);
+    let groups = groups(
+        &shader::LOSS,
+        (params.rows as usize).next_multiple_of(BLOCK),
+    );
     let buffers: [&dyn crate::gpu::buffer::Argument; 6] =
-        [plan, samples, parameters, old_log_std, rows, slopes];
+        [plan, samples, parameters, old_log_std, answers, slopes];
     gpu.launch(&shader::LOSS, groups, &buffers, params);
 }
 
@@ -46,27 +49,31 @@ pub fn twin(
     samples: &[f32],
     parameters: &[f32],
     old_log_std: &[f32],
-    rows: &[f32],
+    answers: &[f32],
     slopes: &mut [f32],
     params: &Params,
 ) {
     let [.., actor, critic, judged] = &plan.places[..] else {
         unreachable!("there are two networks, and what the loss adds up");
     };
-    let [mean, value, judged] = [actor, critic, judged].map(|place| place.above as usize);
-    let pitch = plan.head.pitch as usize;
+    let [above_actor, above_critic, judged] =
+        [actor, critic, judged].map(|place| place.above as usize);
+    let (rows, width) = (params.rows as usize, params.width as usize);
+    let (means, values) = answers.split_at(rows * TRAJECTORY);
     let log_std = &parameters[plan.head.parameters as usize - TRAJECTORY..];
-    let samples = samples.chunks_exact(params.width as usize);
-    let samples = samples
-        .skip(params.start as usize)
-        .take(params.rows as usize);
-    let rows = rows.chunks_exact(pitch).zip(slopes.chunks_exact_mut(pitch));
-    for (sample, (row, slopes)) in samples.zip(rows) {
+    for row in 0..rows.next_multiple_of(BLOCK) {
+        let mut slope = |column: usize, value: f32| {
+            // Rows that fill the last block have no slopes.
+            slopes[plan.at(row, column)] = if row < rows { value } else { 0.0 };
+        };
+        let sample = row.min(rows - 1);
+        let (mean, value) = (&means[sample * TRAJECTORY..], values[sample]);
+        let sample = &samples[(params.start as usize + sample) * width..][..width];
         let learned = &sample[sample.len() - 2 * TRAJECTORY - 4..];
         let (action, learned) = learned.split_at(TRAJECTORY);
         let (old_mean, learned) = learned.split_at(TRAJECTORY);
         let [old_log_prob, advantage, target, old_value] = std::array::from_fn(|i| learned[i]);
-        let away = |from: &[f32], i: usize| (from[i] - row[mean + i]) * (-log_std[i]).exp();
+        let away = |from: &[f32], i: usize| (from[i] - mean[i]) * (-log_std[i]).exp();
 
         let (mut log_ratio, mut kl, mut entropy) = (-old_log_prob, 0.0, 0.0);
         for i in 0..TRAJECTORY {
@@ -85,20 +92,22 @@ pub fn twin(
             let (noise, moved) = (away(action, i), away(old_mean, i));
             let doubled = (2.0 * (old_log_std[i] - log_std[i])).exp();
             let by_mean = pull * noise - params.kl_coefficient * moved;
-            slopes[mean + i] = by_mean * (-log_std[i]).exp() * params.share;
+            let by_answer = by_mean * (-log_std[i]).exp();
+            slope(above_actor + i, by_answer * params.share);
             let by_noise = pull * (noise * noise - 1.0);
             let by_kl = params.kl_coefficient * (1.0 - doubled - moved * moved);
-            slopes[judged + i] = (by_noise + by_kl - params.entropy_coefficient) * params.share;
+            let by_log_std = by_noise + by_kl - params.entropy_coefficient;
+            slope(judged + i, by_log_std * params.share);
         }
 
-        let error = row[value] - target;
-        let step = row[value] - old_value;
+        let error = value - target;
+        let step = value - old_value;
         let limit = params.value_clip;
         let near = error - step + step.clamp(-limit, limit);
         // Where the limited change counts, nothing depends on the value.
         let limited = limit > 0.0 && step.abs() > limit && near * near > error * error;
-        let slope = error * params.value_coefficient * params.share;
-        slopes[value] = if limited { 0.0 } else { slope };
+        let by_value = error * params.value_coefficient * params.share;
+        slope(above_critic, if limited { 0.0 } else { by_value });
         let sums: [f32; SUMS] = [
             -(ratio * advantage).min(clipped * advantage),
             0.5 * if limited { near * near } else { error * error },
@@ -106,6 +115,7 @@ pub fn twin(
             kl,
             f32::from(ratio != clipped),
         ];
-        slopes[judged + TRAJECTORY..][..SUMS].copy_from_slice(&sums);
+        let sums = sums.into_iter().enumerate();
+        sums.for_each(|(i, sum)| slope(judged + TRAJECTORY + i, sum));
     }
 }

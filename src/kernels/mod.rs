@@ -11,9 +11,9 @@
 //! [`gae`] judges the actions and [`tally`] sums up the episodes. [`bandwidth`] and [`arithmetic`] measure
 //! what a device could do.
 //!
-//! A gradient step of networks of dense layers, in order: [`take`] what was observed, [`forward`] through the layers,
-//! [`mod@loss`] what is wrong with the answers, [`backward`] through the layers, [`mod@gradient`] of the parameters,
-//! [`total`] of its pieces, and [`adam`] steps against it. [`network`] says how they lie in memory.
+//! A gradient step of networks of dense layers, in order: [`forward`] through the layers, [`mod@loss`] what is wrong
+//! with the answers, [`backward`] through the layers, [`mod@gradient`] of the parameters, [`total`] of its pieces, and
+//! [`adam`] steps against it. [`network`] says how they lie in memory.
 //!
 //! A step of the simulated bodies, in order: [`articulate`] poses, masses and what the drives do, [`contact`] find what
 //! touches, [`constrain`] say how contacts and joint limits resist, [`solve`] find their forces and move on, [`blows`]
@@ -59,7 +59,6 @@ pub mod search_wide;
 pub mod sense;
 pub mod solve;
 pub mod step;
-pub mod take;
 pub mod tally;
 pub mod total;
 pub mod wander;

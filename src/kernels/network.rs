@@ -1,13 +1,17 @@
 //! How policy and critic, all of dense layers, lie in memory while they learn on a GPU: what
-//! `shaders/shared/network.wgsl` says, which [`take`](super::take), [`forward`](super::forward),
-//! [`loss`](super::loss), [`backward`](super::backward), [`gradient`](super::gradient),
-//! [`total`](super::total) and [`adam`](super::adam) read.
+//! `shaders/shared/network.wgsl` says, which [`forward`](super::forward), [`loss`](super::loss),
+//! [`backward`](super::backward), [`gradient`](super::gradient), [`total`](super::total) and
+//! [`adam`](super::adam) read.
 
 use crate::gpu::shader::gradient::constants as wgsl;
 use bytemuck::{Pod, Zeroable};
 
 /// Rows, or inputs, that an invocation computes at once.
 pub const BLOCK: usize = 8;
+/// Invocations of a workgroup.
+pub(super) const LANES: u32 = 32;
+/// The most rows: WebGPU launches no more workgroups in a dimension.
+pub const ROWS: usize = BLOCK * 65_535;
 /// What the loss adds up besides the gradient with respect to `log_std`: surrogate, value loss,
 /// entropy, KL divergence, samples out of the clip range.
 pub const SUMS: usize = 5;
@@ -15,7 +19,10 @@ pub const SUMS: usize = 5;
 pub const GROUP: usize = 64;
 
 const _: () = assert!(
-    wgsl::BLOCK as usize == BLOCK && wgsl::SUMS as usize == SUMS && wgsl::GROUP as usize == GROUP
+    wgsl::BLOCK as usize == BLOCK
+        && wgsl::LANES == LANES
+        && wgsl::SUMS as usize == SUMS
+        && wgsl::GROUP as usize == GROUP
 );
 
 /// A layer.
@@ -39,10 +46,10 @@ pub struct Place {
 pub struct Head {
     /// Samples.
     pub rows: u32,
-    /// Numbers of a row: what is observed, then what comes out of every layer, the actor's before
-    /// the critic's, then what the loss adds up.
+    /// Numbers of a row: what is observed, once for each network, then what comes out of every layer,
+    /// the actor's before the critic's, then what the loss adds up.
     pub pitch: u32,
-    /// Rows are added up in so many pieces of `piece`.
+    /// Rows are added up in so many pieces of `piece` blocks.
     pub pieces: u32,
     pub piece: u32,
     pub parameters: u32,
@@ -80,17 +87,36 @@ impl Plan {
         turned
     }
 
-    /// Rows, filled up to whole blocks.
-    pub fn room(&self) -> usize {
-        (self.head.rows as usize).next_multiple_of(BLOCK)
+    /// The same networks, and pieces of the same size, for fewer rows.
+    pub fn fewer(&self, rows: usize) -> Plan {
+        let mut plan = self.clone();
+        plan.head.rows = rows as u32;
+        plan.head.pieces = (plan.blocks() as u32).div_ceil(plan.head.piece);
+        plan
     }
 
-    /// Workgroups of an invocation for each of the most inputs or outputs of some places, and each
-    /// block of rows.
-    pub(super) fn groups(&self, places: &[Place], wide: impl Fn(&Place) -> u32) -> [u32; 3] {
-        let widest = places.iter().map(wide).max().unwrap_or(0);
-        let blocks = self.head.rows.div_ceil(BLOCK as u32);
-        [widest.div_ceil(32), blocks, places.len() as u32]
+    /// Blocks of rows.
+    pub fn blocks(&self) -> usize {
+        (self.head.rows as usize).div_ceil(BLOCK)
+    }
+
+    /// Numbers of all rows, the last block filled up.
+    pub fn numbers(&self) -> usize {
+        self.blocks() * self.head.pitch as usize * BLOCK
+    }
+
+    /// Where among them a column of a row stands.
+    pub fn at(&self, row: usize, column: usize) -> usize {
+        (row / BLOCK * self.head.pitch as usize + column) * BLOCK + row % BLOCK
+    }
+
+    /// A network's layers, from below; 0 is the actor's, 1 the critic's.
+    pub(super) fn layers(
+        &self,
+        network: usize,
+    ) -> impl DoubleEndedIterator<Item = &Place> + ExactSizeIterator {
+        let both = &self.places[..self.places.len() - 1];
+        both[network..].iter().step_by(2)
     }
 }
 

@@ -2,14 +2,10 @@
 //! itself and keys its state by random names; one vector makes the norm of the whole gradient a
 //! single operation on the device and the state two plain arrays of a checkpoint.
 
-use crate::kernels::adam;
+use crate::kernels::adam::{self, BETA_1, BETA_2, EPSILON};
 use crate::tensors::sum;
 use burn::tensor::{Device, Tensor};
 use multiversion::multiversion;
-
-const BETA_1: f64 = 0.9;
-const BETA_2: f64 = 0.999;
-const EPSILON: f64 = 1e-5;
 
 /// Moments of the gradient.
 #[derive(Clone)]

@@ -1,9 +1,9 @@
-//! Proximal policy optimisation (Schulman et al. 2017) in burn's tensors on a GPU, and in
-//! kernels of its own on the CPU.
+//! Proximal policy optimisation (Schulman et al. 2017).
 //!
 //! [`network`] is the form of the networks, of [`layer`]s, [`policy`] holds them, [`rollout`] lets them
 //! act, [`update`] improves them by the gradients of a [`loss`] with [`adam`], [`scale`] keeps the
-//! critic's targets near one. On the CPU [`native`] does what burn's tensors do elsewhere.
+//! critic's targets near one. The networks run, and learn, by kernels of our own on the CPU ([`native`]); on a
+//! GPU by launches of our own where all layers are dense (`launched`), else in burn's tensors.
 
 pub mod adam;
 mod launched;

@@ -1,9 +1,12 @@
 //! Policy and critic: two separate networks of the same form with linear ends, and the logarithm
 //! of the actions' standard deviation.
 
+use super::launched::answer::Answering;
 use super::layer::{Bend, Layer, floats};
 use super::native;
 use super::network::{Net, Place, Shape};
+use crate::gpu::Buffer;
+use crate::gpu::tensor::to_buffer;
 use crate::kernels::layout::GOAL;
 use crate::motion::features::TRAJECTORY;
 use crate::tensors::{upload, values};
@@ -11,6 +14,7 @@ use burn::tensor::module::{conv2d, linear};
 use burn::tensor::ops::ConvOptions;
 use burn::tensor::{Device, Tensor, activation::relu};
 use std::ops::Range;
+use std::sync::Arc;
 
 impl Shape {
     /// Cuts the flat vector into its tensors.
@@ -28,8 +32,23 @@ impl Shape {
         };
         Policy {
             networks,
-            log_std: flat.clone().narrow(0, self.log_std, TRAJECTORY),
+            log_std: self.log_std(flat),
         }
+    }
+
+    /// The same where launches of our own answer.
+    pub(super) fn launched(&self, answering: &Arc<Answering>, flat: &Tensor<1>) -> Policy {
+        Policy {
+            networks: Networks::Launched {
+                answering: answering.clone(),
+                parameters: to_buffer(flat.clone()),
+            },
+            log_std: self.log_std(flat),
+        }
+    }
+
+    fn log_std(&self, flat: &Tensor<1>) -> Tensor<1> {
+        flat.clone().narrow(0, self.log_std, TRAJECTORY)
     }
 }
 
@@ -60,6 +79,10 @@ enum Networks {
         shape: Shape,
         flat: Vec<f32>,
     },
+    Launched {
+        answering: Arc<Answering>,
+        parameters: Buffer<f32>,
+    },
 }
 
 impl Policy {
@@ -68,6 +91,10 @@ impl Policy {
         match &self.networks {
             Networks::Burn { actor, .. } => actor.answer(observation),
             Networks::Native { shape, flat } => natively(&shape.actor, flat, observation),
+            Networks::Launched {
+                answering,
+                parameters,
+            } => answering.answer(0, TRAJECTORY, parameters, observation),
         }
     }
 
@@ -76,6 +103,10 @@ impl Policy {
         let answer = match &self.networks {
             Networks::Burn { critic, .. } => critic.answer(observation),
             Networks::Native { shape, flat } => natively(&shape.critic, flat, observation),
+            Networks::Launched {
+                answering,
+                parameters,
+            } => answering.answer(1, 1, parameters, observation),
         };
         answer.squeeze_dim::<1>(1)
     }

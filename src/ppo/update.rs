@@ -2,19 +2,21 @@
 
 use super::Ppo;
 use super::adam::Adam;
-use super::launched;
+use super::launched::answer::Answering;
+use super::launched::descent::Descent as Launched;
 use super::loss::{self, LOSSES, Terms};
-use super::native::descent::Descent;
+use super::native::descent::Descent as Native;
 use super::network::Shape;
 use super::policy::Policy;
 use super::rollout::Rollout;
 use super::scale::Scale;
 use super::study::Study;
-use crate::gpu::Device;
+use crate::gpu::{Device, Gpu};
 use crate::kernels::rng::permutation;
 use crate::tensors::{mean, values, vector};
 use anyhow::Context;
 use burn::tensor::{Int, Tensor, TensorData};
+use std::sync::Arc;
 
 /// Everything that learns, on one device.
 pub struct Learner {
@@ -30,14 +32,24 @@ pub struct Learner {
     way: Way,
 }
 
-/// What takes the gradient steps.
+/// What runs the networks.
 enum Way {
     /// Kernels of our own on the CPU.
     Native,
     /// Our own on a GPU, where all layers are dense.
-    Launched(Box<launched::Descent>),
+    Launched(Box<Launched>, Arc<Answering>),
     /// burn's, elsewhere.
     Tensors,
+}
+
+impl Way {
+    fn of(gpu: &Gpu, shape: &Shape, config: &Ppo) -> Self {
+        let descent = Launched::new(gpu, shape, config);
+        match descent.zip(Answering::new(gpu, shape, config.batch())) {
+            Some((descent, answering)) => Way::Launched(Box::new(descent), Arc::new(answering)),
+            None => Way::Tensors,
+        }
+    }
 }
 
 /// Means over the last pass of an update.
@@ -82,10 +94,7 @@ impl Learner {
         let tensors = device.tensors();
         let way = match device {
             Device::Cpu => Way::Native,
-            Device::Gpu(gpu) => match launched::Descent::new(gpu, &tensors, &shape, config) {
-                Some(descent) => Way::Launched(Box::new(descent)),
-                None => Way::Tensors,
-            },
+            Device::Gpu(gpu) => Way::of(gpu, &shape, config),
         };
         let parameters = vector(&shape.init(seed, config.log_std), &tensors);
         Ok(Learner {
@@ -102,7 +111,10 @@ impl Learner {
     }
 
     pub fn policy(&self) -> Policy {
-        self.shape.cut(&self.parameters)
+        match &self.way {
+            Way::Launched(_, answering) => self.shape.launched(answering, &self.parameters),
+            Way::Native | Way::Tensors => self.shape.cut(&self.parameters),
+        }
     }
 
     /// One update. Returns `[policy, value, entropy, kl, clip fraction, explained variance]` on the
@@ -113,7 +125,7 @@ impl Learner {
         let old_log_std = &rollout.log_std;
         let sums = match self.way {
             Way::Native => self.descend_natively(batch, old_log_std, config),
-            Way::Launched(_) => self.descend_by_launches(batch, old_log_std, config),
+            Way::Launched(..) => self.descend_by_launches(batch, old_log_std, config),
             Way::Tensors => self.descend_in_tensors(batch, old_log_std, config),
         };
         self.updates += 1;
@@ -190,7 +202,7 @@ impl Learner {
         old_log_std: &Tensor<1>,
         config: &Ppo,
     ) -> Tensor<1> {
-        let Way::Launched(descent) = &self.way else {
+        let Way::Launched(descent, _) = &self.way else {
             unreachable!("asked for where there is none")
         };
         let moving = descent.begin(&self.parameters, &self.adam);
@@ -218,7 +230,7 @@ impl Learner {
     ) -> Tensor<1> {
         let ([samples, width], device) = (batch.dims(), batch.device());
         let (batch, old_log_std) = (values(batch), values(old_log_std.clone()));
-        let mut descent = Descent {
+        let mut descent = Native {
             parameters: values(self.parameters.clone()),
             first: values(self.adam.first.clone()),
             second: values(self.adam.second.clone()),

@@ -45,7 +45,10 @@ impl Batch {
     /// As [`World::tally`], of all.
     pub fn tally(&mut self) -> Tensor<1> {
         let sums = self.parts.iter_mut().map(|part| part.tally());
-        sums.reduce(Tensor::add).expect("a batch has a part")
+        let Some(sums) = sums.reduce(Tensor::add) else {
+            unreachable!("a batch has a part")
+        };
+        sums
     }
 
     /// As [`World::set_level`].

@@ -8,7 +8,6 @@ mod backward;
 mod forward;
 mod gradient;
 mod loss;
-mod take;
 mod total;
 
 use crate::checked;
@@ -46,7 +45,7 @@ impl Case {
     fn new(hidden: &[usize], rows: usize) -> Case {
         let plan = plan(hidden, rows);
         let mut draw = Draw::new(rows as u32);
-        let room = plan.room() * plan.head.pitch as usize;
+        let room = plan.numbers();
         let mut some = |count: usize| -> Vec<f32> {
             let values = draw.normals(count).into_iter();
             values.map(|value| 0.5 * value).collect()
@@ -71,15 +70,6 @@ impl Case {
         self.plan.head.rows as usize
     }
 
-    fn pitch(&self) -> usize {
-        self.plan.head.pitch as usize
-    }
-
-    /// Numbers of the minibatch's rows, without what fills the last block.
-    fn used<'a>(&self, values: &'a [f32]) -> &'a [f32] {
-        &values[..self.rows() * self.pitch()]
-    }
-
     /// Weights as `[outputs][inputs]`.
     fn turned(&self) -> Vec<f32> {
         let mut turned = self.parameters.clone();
@@ -92,8 +82,8 @@ impl Case {
 
 /// Both networks of such hidden layers; what the loss adds up.
 fn plan(hidden: &[usize], rows: usize) -> Plan {
-    let (mut places, mut below, mut inputs) = (Vec::new(), [0, 0], GOAL);
-    let (mut column, mut start) = (GOAL, 0);
+    let (mut places, mut below, mut inputs) = (Vec::new(), [0, GOAL], GOAL);
+    let (mut column, mut start) = (2 * GOAL, 0);
     for layer in 0..=hidden.len() {
         let last = layer == hidden.len();
         let outputs = if last {
@@ -128,7 +118,7 @@ fn plan(hidden: &[usize], rows: usize) -> Plan {
         rows: rows as u32,
         pitch: (column + TRAJECTORY + SUMS) as u32,
         pieces: rows.div_ceil(64) as u32,
-        piece: 64,
+        piece: 8,
         parameters: (start + TRAJECTORY) as u32,
         count: places.len() as u32,
     };
