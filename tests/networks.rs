@@ -206,6 +206,20 @@ fn a_sample_does_not_depend_on_its_neighbours() {
     assert_eq!(mean(&all)[33 * TRAJECTORY..34 * TRAJECTORY], one);
 }
 
+/// What launches of our own would need at once, lavapipe has no buffer for.
+#[test]
+fn networks_wider_than_a_buffer_answer_all_the_same() {
+    let mut ppo = preset(Kind::Plane, Preset::Fast);
+    (ppo.envs, ppo.horizon, ppo.network.hidden) = (1024, 16, vec![1100]);
+    let lavapipe = Device::open(Choice::Lavapipe).expect("an adapter");
+    let mean = |device: &Device| {
+        let learner = Learner::new(&ppo, GOAL, device, 1).expect("a network that fits");
+        let observation = upload(observations(GOAL), [SAMPLES, GOAL], &device.tensors());
+        read(learner.policy().mean(observation)).expect("answers")
+    };
+    close(&mean(&lavapipe), &mean(&Device::Cpu), "mean");
+}
+
 #[test]
 fn filters_that_do_not_fit_are_refused() {
     let fits = |size: usize, stride: usize, filters: usize| {

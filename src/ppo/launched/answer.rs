@@ -3,7 +3,7 @@
 use super::super::network::Shape;
 use super::plan;
 use crate::gpu::tensor::{from_buffer, to_buffer};
-use crate::gpu::{Buffer, Gpu};
+use crate::gpu::{Buffer, Device, Gpu};
 use crate::kernels::forward;
 use burn::tensor::Tensor;
 
@@ -21,10 +21,13 @@ pub struct Answering {
 
 impl Answering {
     /// To so many observations at once, if there are more than [`AT_ONCE`] one part after the other. None if a
-    /// layer is not dense.
+    /// layer is not dense, or the rows too large for the device.
     pub fn new(gpu: &Gpu, shape: &Shape, observations: usize) -> Option<Self> {
         let most = observations.min(AT_ONCE);
         let plan = plan(shape, most)?;
+        Device::from(gpu.clone())
+            .holds("rows", plan.numbers())
+            .ok()?;
         Some(Answering {
             table: Buffer::from_slice(gpu, &plan.words()),
             rows: Buffer::zeroed(gpu, plan.numbers()),

@@ -6,7 +6,7 @@ use super::super::loss::Terms;
 use super::super::network::Shape;
 use super::plan;
 use crate::gpu::tensor::{from_buffer, to_buffer};
-use crate::gpu::{self, Buffer, Gpu};
+use crate::gpu::{Buffer, Device, Gpu};
 use crate::kernels::network::{GROUP, Plan, ROWS, SUMS};
 use crate::kernels::{adam, backward, forward, gradient, loss, total};
 use crate::motion::features::TRAJECTORY;
@@ -48,7 +48,7 @@ pub struct Moving {
 }
 
 impl Descent {
-    /// None if a layer is not dense, or a minibatch too large for the device.
+    /// None if a layer is not dense, or what a minibatch needs too large for the device.
     pub fn new(gpu: &Gpu, shape: &Shape, config: &Ppo) -> Option<Self> {
         let (samples, minibatch) = (config.batch(), config.minibatch.min(config.batch()));
         let mut plans = vec![plan(shape, minibatch)?];
@@ -56,12 +56,14 @@ impl Descent {
             plans.push(plans[0].fewer(samples % minibatch));
         }
         let (room, pieces) = (plans[0].numbers(), plans[0].head.pieces as usize);
-        let device = gpu::Device::from(gpu.clone());
-        if minibatch > ROWS || device.holds("rows", room).is_err() {
-            return None;
-        }
         let parameters = shape.parameters();
         let numbers = parameters + SUMS;
+        let device = Device::from(gpu.clone());
+        device.holds("rows", room).ok()?;
+        device.holds("partial sums", pieces * numbers).ok()?;
+        if minibatch > ROWS {
+            return None;
+        }
         let place = plans[0].turned();
         let mut order = vec![0; parameters];
         for (from, &to) in place.iter().enumerate() {
