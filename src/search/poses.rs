@@ -138,12 +138,39 @@ impl Poses {
             + size_of_val(&self.boxes[..])
     }
 
+    /// Raises bounds of a group's leaves that begin with these `codes` by what the boxes around the leaves'
+    /// poses say besides, where there are boxes.
+    #[inline(always)]
+    pub fn raise(
+        &self,
+        group: usize,
+        codes: [u8; LANES],
+        query: &[f32; PADDED],
+        bounds: &mut [f32; LANES],
+    ) {
+        let Some(boxes) = self.boxes.get(group) else {
+            return;
+        };
+        let outside = boxes.outside(query, query);
+        for ((bound, known), outside) in bounds.iter_mut().zip(self.squares(codes)).zip(outside) {
+            let more = outside - known;
+            *bound += if more > 0.0 { more } else { 0.0 };
+        }
+    }
+
+    /// Squares of the distances that codes stand for.
+    #[inline(always)]
+    pub fn squares(&self, codes: [u8; LANES]) -> [f32; LANES] {
+        squares(codes, self.shape.step)
+    }
+
     /// What is known of some frames' poses, copied together: so it is fetched in a row, and not here and
     /// there when it is needed.
     pub fn gather(&self, frames: &[u32]) -> Gathered<'_> {
         let groups = self.shape.groups;
         let mut gathered = Gathered {
             poses: self,
+            by_region: Vec::with_capacity(frames.len() * groups.div_ceil(LANES)),
             by_group: Vec::with_capacity(frames.len() * groups),
             by_leaf: Vec::new(),
         };
@@ -154,6 +181,7 @@ impl Poses {
             let first = self.block_of[frame as usize] as usize * groups;
             let codes = &self.by_group[first..][..groups];
             gathered.by_group.extend_from_slice(codes);
+            gathered.by_region.extend(codes.chunks(LANES).map(least));
             let codes = self.by_leaf.get(first..first + groups);
             gathered
                 .by_leaf
@@ -166,6 +194,8 @@ impl Poses {
 /// What is known of some frames' poses.
 pub struct Gathered<'a> {
     poses: &'a Poses,
+    /// `[frames][regions]`
+    by_region: Vec<u8>,
     /// `[frames][groups]`
     by_group: Vec<u8>,
     /// `[frames][groups][LANES]`; empty where there are none.
@@ -178,8 +208,9 @@ impl Gathered<'_> {
     pub fn row(&self, at: usize) -> Row<'_> {
         let Shape { groups, step, .. } = self.poses.shape;
         let first = at * groups;
+        let regions = groups.div_ceil(LANES);
         Row {
-            boxes: &self.poses.boxes,
+            by_region: &self.by_region[at * regions..][..regions],
             by_group: &self.by_group[first..][..groups],
             by_leaf: self.by_leaf.get(first..first + groups),
             step,
@@ -190,55 +221,59 @@ impl Gathered<'_> {
 /// Lower bounds of one frame's squared distances to the poses of all leaves.
 #[derive(Clone, Copy)]
 pub struct Row<'a> {
+    by_region: &'a [u8],
     by_group: &'a [u8],
     by_leaf: Option<&'a [[u8; LANES]]>,
-    boxes: &'a [Boxes],
     step: f32,
 }
 
 impl Row<'_> {
-    /// To sixteen groups, from a multiple of sixteen on; 0 for those past the end.
+    /// To the regions `at` that place among all, sixteen at a time; 0 for those past the end.
     #[inline(always)]
-    pub fn to_groups(self, first: usize) -> [f32; LANES] {
-        let codes = &self.by_group[first..];
+    pub fn to_regions(self, at: usize) -> [f32; LANES] {
+        self.sixteen(&self.by_region[at * LANES..])
+    }
+
+    /// To the groups of a region; 0 for those past the end.
+    #[inline(always)]
+    pub fn to_groups(self, region: usize) -> [f32; LANES] {
+        self.sixteen(&self.by_group[region * LANES..])
+    }
+
+    #[inline(always)]
+    fn sixteen(self, codes: &[u8]) -> [f32; LANES] {
         let mut padded = [0; LANES];
         match codes.first_chunk() {
             Some(full) => padded = *full,
             None => padded[..codes.len()].copy_from_slice(codes),
         }
-        self.squares(padded)
+        squares(padded, self.step)
     }
 
     /// To the leaves of a group.
     #[inline(always)]
-    pub fn to_leaves(self, group: usize) -> [f32; LANES] {
-        self.squares(match self.by_leaf {
+    pub fn to_leaves(self, group: usize) -> [u8; LANES] {
+        match self.by_leaf {
             Some(codes) => codes[group],
             None => [self.by_group[group]; LANES],
-        })
-    }
-
-    /// Raises bounds that begin with [`Row::to_leaves`] by what the boxes around the leaves' poses say
-    /// besides, where there are boxes.
-    #[inline(always)]
-    pub fn raise(self, group: usize, query: &[f32; PADDED], bounds: &mut [f32; LANES]) {
-        if self.by_leaf.is_some() {
-            return;
-        }
-        let known = self.squares([self.by_group[group]; LANES]);
-        let outside = self.boxes[group].outside(query, query);
-        for ((bound, known), outside) in bounds.iter_mut().zip(known).zip(outside) {
-            let more = outside - known;
-            *bound += if more > 0.0 { more } else { 0.0 };
         }
     }
+}
 
-    #[inline(always)]
-    fn squares(self, codes: [u8; LANES]) -> [f32; LANES] {
-        codes.map(|code| {
-            let distance = f32::from(code) * self.step;
-            distance * distance
-        })
+#[inline(always)]
+fn squares(codes: [u8; LANES], step: f32) -> [f32; LANES] {
+    codes.map(|code| {
+        let distance = f32::from(code) * step;
+        distance * distance
+    })
+}
+
+/// Of the codes of a region's groups.
+#[inline(always)]
+fn least(codes: &[u8]) -> u8 {
+    match codes.first_chunk::<LANES>() {
+        Some(full) => full.iter().copied().fold(u8::MAX, u8::min),
+        None => codes.iter().copied().fold(u8::MAX, u8::min),
     }
 }
 
@@ -263,7 +298,7 @@ fn sorted(frames: &[[f32; PADDED]], block: usize) -> (Vec<u32>, Vec<u32>) {
     let keys: Vec<_> = frames.iter().map(pose).collect();
     let mut order: Vec<u32> = (0..frames.len() as u32).collect();
     if block > BY_LEAF {
-        tree::sort(&keys, &mut order, [block, block]);
+        tree::sort(&keys, &mut order, [block]);
     }
     let mut block_of = vec![0; frames.len()];
     for (at, &frame) in order.iter().enumerate() {

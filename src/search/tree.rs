@@ -1,14 +1,15 @@
 //! The rows, sorted so that near ones lie together: a balanced k-d tree's leaves of sixteen rows,
-//! sixteen leaves a group.
+//! sixteen leaves a group, sixteen groups a region.
 
 use super::axes::Axes;
 use crate::motion::database::PADDED;
 use crate::motion::features::{FEATURE, POSE, TRAJECTORY};
 use rayon::prelude::*;
 
-/// Rows a leaf, leaves a group: the width of the widest vector registers.
+/// Rows a leaf, leaves a group, groups a region: the width of the widest vector registers.
 pub const LANES: usize = 16;
-const GROUP: usize = LANES * LANES;
+/// Rows of a region, a group and a leaf.
+const SIZES: [usize; 3] = [LANES * LANES * LANES, LANES * LANES, LANES];
 /// The pose's share in how rows are sorted. Poses are bounded by a table however they lie, so it
 /// is the boxes of the trajectories that should be small.
 const POSE_SHARE: f32 = 0.5;
@@ -35,8 +36,10 @@ pub struct Tree {
     pub ids: Vec<[u32; LANES]>,
     /// Boxes of the leaves, by group.
     pub inner: Vec<Boxes>,
-    /// Boxes of the groups, sixteen at a time.
+    /// Boxes of the groups, by region.
     pub outer: Vec<Boxes>,
+    /// Boxes of the regions, sixteen at a time.
+    pub regions: Vec<Boxes>,
 }
 
 /// What rows are sorted by, and behind it what their boxes are made of.
@@ -60,10 +63,10 @@ impl Tree {
         let keys: Vec<Key> = rows.par_iter().map(key).collect();
         let order = order.unwrap_or_else(|| {
             let mut order: Vec<u32> = (0..rows.len() as u32).collect();
-            sort(&keys, &mut order, [LANES, GROUP]);
+            sort(&keys, &mut order, SIZES);
             order
         });
-        let groups = rows.len().div_ceil(GROUP);
+        let groups = rows.len().div_ceil(LANES * LANES);
         let mut leaves = vec![Lanes([[f32::INFINITY; LANES]; FEATURE]); groups * LANES];
         let mut ids = vec![[u32::MAX; LANES]; groups * LANES];
         let mut corners = vec![NOTHING; groups * LANES];
@@ -77,15 +80,14 @@ impl Tree {
             let place = std::array::from_fn(|axis| place[axis]);
             corners[leaf] = around(corners[leaf], [place, place]);
         }
-        let groups: Vec<Corner> = corners
-            .chunks(LANES)
-            .map(|leaves| leaves.iter().copied().fold(NOTHING, around))
-            .collect();
+        let groups = joined(&corners);
+        let regions = joined(&groups);
         Tree {
             leaves,
             ids,
             inner: corners.chunks(LANES).map(pack).collect(),
             outer: groups.chunks(LANES).map(pack).collect(),
+            regions: regions.chunks(LANES).map(pack).collect(),
         }
     }
 
@@ -100,19 +102,23 @@ impl Tree {
             + size_of_val(&self.ids[..])
             + size_of_val(&self.inner[..])
             + size_of_val(&self.outer[..])
+            + size_of_val(&self.regions[..])
     }
 }
 
-/// Splits at the median of the widest dimension until a leaf is left. Halves hold whole groups,
-/// later whole leaves, so that leaves fill up and groups are subtrees; `sizes` are theirs.
-pub fn sort<const D: usize>(keys: &[[f32; D]], order: &mut [u32], sizes: [usize; 2]) {
-    let [leaf, group] = sizes;
-    if order.len() <= leaf {
+/// Splits at the median of the widest dimension until the least of the falling `sizes` is left. Halves
+/// hold as many whole ones of the largest size there is more than one of, so that all but the last are
+/// full, and subtrees.
+pub fn sort<const D: usize, const N: usize>(
+    keys: &[[f32; D]],
+    order: &mut [u32],
+    sizes: [usize; N],
+) {
+    let Some(unit) = sizes.into_iter().find(|&size| order.len() > size) else {
         // Ascending ids: the first of equals in a leaf has the lowest.
         order.sort_unstable();
         return;
-    }
-    let unit = if order.len() > group { group } else { leaf };
+    };
     let middle = (order.len().div_ceil(unit) / 2) * unit;
     let dimension = widest(keys, order);
     order.select_nth_unstable_by(middle, |&a, &b| {
@@ -139,6 +145,13 @@ fn widest<const D: usize>(keys: &[[f32; D]], order: &[u32]) -> usize {
     (0..D)
         .max_by(|&a, &b| variance(a).total_cmp(&variance(b)))
         .unwrap_or(0)
+}
+
+/// The boxes around sixteen boxes each.
+fn joined(corners: &[Corner]) -> Vec<Corner> {
+    let each = corners.chunks(LANES);
+    each.map(|of| of.iter().copied().fold(NOTHING, around))
+        .collect()
 }
 
 /// The box around two boxes.

@@ -199,7 +199,8 @@ fn on_cpu(rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) -> Vec<u32> {
     Indexed::new(rows, queries, MEMORY).nearest_all()
 }
 
-/// The index gives the twin's rows and distances, bit for bit, however little memory it is given.
+/// The index gives the twin's rows and distances, bit for bit, however little memory it is given, for one
+/// query and for all together.
 #[track_caller]
 fn same_as_twin(rows: &[[f32; PADDED]], queries: &[[f32; PADDED]]) {
     let by_twin = by_twin(rows, queries);
@@ -224,6 +225,7 @@ fn same(indexed: &Indexed, by_twin: &[u32]) {
             (twin, distance.to_bits())
         );
     }
+    assert!(indexed.nearest_all() == by_twin);
 }
 
 #[test]

@@ -1,0 +1,424 @@
+//! The search of a batch of queries, region after region of the tree, and in each group after group: what
+//! has been fetched from memory serves them all. A step is made for all queries before the next one
+//! begins, so that the processor need not wait for one query's bounds to know what to do for another.
+
+use super::poses::Row;
+use super::tree::{Boxes, LANES, Lanes};
+use super::{Index, Nearest, length};
+use crate::motion::database::PADDED;
+use crate::motion::features::{FEATURE, TRAJECTORY};
+use multiversion::multiversion;
+
+/// Regions of a query, and of their groups, that are looked into before all others: their winner lets
+/// most of those be skipped.
+const FIRST: usize = 2;
+
+/// What is asked, in the forms the bounds need.
+struct Asked<'a> {
+    query: &'a [f32; PADDED],
+    poses: Row<'a>,
+    trajectory: [f32; TRAJECTORY],
+    /// Groups that are looked into before all others.
+    near: Near,
+    /// Rounding may lengthen a bound (no square) by this and by [`RELATIVE`]: a rotated number
+    /// and its difference to another have errors of a few 2^-24 of the two vectors' lengths.
+    slack: f32,
+}
+
+impl Asked<'_> {
+    /// Whether there is such a group, and it was not looked into yet.
+    #[inline(always)]
+    fn awaits(&self, index: &Index, group: usize) -> bool {
+        group < index.tree.inner.len() && self.near.0.iter().all(|near| near.1 != group)
+    }
+}
+
+const RELATIVE: f32 = 1.0 + 1e-5;
+const SLACK: f32 = 4e-6;
+
+/// The best so far.
+struct Best {
+    nearest: Nearest,
+    /// What lies beyond this bound cannot be nearer, nor as near.
+    limit: f32,
+}
+
+impl Best {
+    const NONE: Best = Best {
+        nearest: Nearest::NONE,
+        limit: f32::INFINITY,
+    };
+
+    #[inline(always)]
+    fn offer(&mut self, id: u32, distance: f32, slack: f32) {
+        let best = self.nearest;
+        if distance < best.distance || (distance == best.distance && id < best.index) {
+            self.nearest = Nearest {
+                index: id,
+                distance,
+            };
+            let length = distance.sqrt() * RELATIVE + slack;
+            self.limit = length * length;
+        }
+    }
+}
+
+#[multiversion(targets(
+    "x86_64+avx512f+avx512vl+avx512dq+avx512bw+fma",
+    "x86_64+avx2+fma",
+    "aarch64+neon"
+))]
+pub fn nearest(index: &Index, frames: &[u32], queries: &[[f32; PADDED]], found: &mut [Nearest]) {
+    let poses = index.poses.gather(frames);
+    let asked = |(at, query)| Asked {
+        query,
+        poses: poses.row(at),
+        trajectory: index.axes.turn(query),
+        near: Near::NONE,
+        slack: SLACK * (index.longest + length(query)),
+    };
+    let mut asked: Vec<Asked> = queries.iter().enumerate().map(asked).collect();
+    let bounds = to_regions(index, &mut asked);
+    let mut best: Vec<Best> = asked.iter_mut().map(|asked| seed(index, asked)).collect();
+    let regions = bounds.chunks_exact(asked.len());
+    let regions = regions.take(index.tree.outer.len()).enumerate();
+    if let ([asked], [best]) = (&asked[..], &mut best[..]) {
+        // Nothing to share.
+        regions.for_each(|(region, bounds)| alone(index, region, bounds[0], asked, best));
+    } else {
+        let mut steps = Steps::new(asked.len());
+        for (region, bounds) in regions {
+            steps.groups(index, region, bounds, &asked, &best);
+            for lane in 0..LANES {
+                steps.leaves(index, region, lane, &asked, &mut best);
+            }
+        }
+    }
+    for (found, best) in found.iter_mut().zip(best) {
+        *found = best.nearest;
+    }
+}
+
+/// Squared distances to all regions at least, `[regions][queries]`; the nearest ones are left in `near`.
+#[inline(always)]
+fn to_regions(index: &Index, asked: &mut [Asked]) -> Vec<f32> {
+    let count = asked.len();
+    let mut all = vec![0.0; index.tree.regions.len() * LANES * count];
+    for (at, boxes) in index.tree.regions.iter().enumerate() {
+        let all = &mut all[at * LANES * count..][..LANES * count];
+        for (i, asked) in asked.iter_mut().enumerate() {
+            let bounds = outside(boxes, &asked.trajectory, asked.poses.to_regions(at));
+            asked.near.offer(&bounds, at * LANES);
+            for (of_region, bound) in all.chunks_exact_mut(count).zip(bounds) {
+                of_region[i] = bound;
+            }
+        }
+    }
+    all
+}
+
+/// A first answer: of the nearest groups of the nearest regions, which take their place in `near`.
+#[inline(always)]
+fn seed(index: &Index, asked: &mut Asked) -> Best {
+    let mut near = Near::NONE;
+    for (_, region) in asked.near.0 {
+        if let Some(boxes) = index.tree.outer.get(region) {
+            let poses = asked.poses.to_groups(region);
+            near.offer(&outside(boxes, &asked.trajectory, poses), region * LANES);
+        }
+    }
+    asked.near = near;
+    let mut best = Best::NONE;
+    for (_, group) in near.0 {
+        if group < index.tree.inner.len() {
+            let bounds = to_leaves(index, group, asked, asked.poses.to_leaves(group));
+            let within = Within::of(&bounds, best.limit);
+            compare(index, group, asked, &bounds, within, &mut best);
+        }
+    }
+    best
+}
+
+/// Lets a single query look into the groups of a region, of which a bound is known, and their leaves.
+#[inline(always)]
+fn alone(index: &Index, region: usize, bound: f32, asked: &Asked, best: &mut Best) {
+    if bound > best.limit {
+        return;
+    }
+    let poses = asked.poses.to_groups(region);
+    let groups = outside(&index.tree.outer[region], &asked.trajectory, poses);
+    for lane in Within::of(&groups, best.limit) {
+        let group = region * LANES + lane;
+        if groups[lane] > best.limit || !asked.awaits(index, group) {
+            continue;
+        }
+        let bounds = to_leaves(index, group, asked, asked.poses.to_leaves(group));
+        let within = Within::of(&bounds, best.limit);
+        compare(index, group, asked, &bounds, within, best);
+    }
+}
+
+/// Squared distances to the leaves of a group at least, of whose poses these are the codes.
+#[inline(always)]
+fn to_leaves(index: &Index, group: usize, asked: &Asked, codes: [u8; LANES]) -> [f32; LANES] {
+    let known = index.poses.squares(codes);
+    let mut bounds = outside(&index.tree.inner[group], &asked.trajectory, known);
+    index.poses.raise(group, codes, asked.query, &mut bounds);
+    bounds
+}
+
+/// A query that has to look into a group.
+struct Waiting {
+    query: u32,
+    /// Of the group.
+    bound: f32,
+    /// Of its leaves.
+    codes: [u8; LANES],
+}
+
+/// A query, and bounds of sixteen groups or leaves.
+#[derive(Clone, Copy)]
+struct Bounded {
+    query: u32,
+    bounds: [f32; LANES],
+    within: Within,
+}
+
+/// What a step leaves for the next one. What comes to nothing is overwritten by what follows, without a
+/// branch: which ones do cannot be foreseen.
+struct Steps {
+    queries: Vec<u32>,
+    bounded: Vec<Bounded>,
+    /// By group of a region.
+    waiting: [Vec<Waiting>; LANES],
+}
+
+impl Steps {
+    fn new(count: usize) -> Self {
+        let nothing = Bounded {
+            query: 0,
+            bounds: [0.0; LANES],
+            within: Within(0),
+        };
+        Steps {
+            queries: vec![0; count],
+            bounded: vec![nothing; count],
+            waiting: Default::default(),
+        }
+    }
+
+    /// Finds the queries that have to look into the groups of a region, of which `bounds` are known.
+    #[inline(always)]
+    fn groups(
+        &mut self,
+        index: &Index,
+        region: usize,
+        bounds: &[f32],
+        asked: &[Asked],
+        best: &[Best],
+    ) {
+        let mut count = 0;
+        for (i, (&bound, best)) in bounds.iter().zip(best).enumerate() {
+            self.queries[count] = i as u32;
+            // Not the other way round: a bound that is no number skips nothing.
+            count += usize::from(bound > best.limit) ^ 1;
+        }
+        let boxes = &index.tree.outer[region];
+        for (&query, bounded) in self.queries[..count].iter().zip(&mut self.bounded) {
+            let asked = &asked[query as usize];
+            let bounds = outside(boxes, &asked.trajectory, asked.poses.to_groups(region));
+            *bounded = Bounded {
+                query,
+                bounds,
+                within: Within::of(&bounds, best[query as usize].limit),
+            };
+        }
+        for Bounded {
+            query,
+            bounds,
+            within,
+        } in &self.bounded[..count]
+        {
+            let at = *query as usize;
+            for lane in *within {
+                let group = region * LANES + lane;
+                if asked[at].awaits(index, group) {
+                    self.waiting[lane].push(Waiting {
+                        query: *query,
+                        bound: bounds[lane],
+                        codes: asked[at].poses.to_leaves(group),
+                    });
+                }
+            }
+        }
+    }
+
+    /// Lets queries look into the leaves of a group.
+    #[inline(always)]
+    fn leaves(
+        &mut self,
+        index: &Index,
+        region: usize,
+        lane: usize,
+        asked: &[Asked],
+        best: &mut [Best],
+    ) {
+        let group = region * LANES + lane;
+        let mut count = 0;
+        for &Waiting {
+            query,
+            bound,
+            codes,
+        } in &self.waiting[lane]
+        {
+            let (asked, best) = (&asked[query as usize], &best[query as usize]);
+            if bound > best.limit {
+                continue;
+            }
+            let bounds = to_leaves(index, group, asked, codes);
+            let within = Within::of(&bounds, best.limit);
+            self.bounded[count] = Bounded {
+                query,
+                bounds,
+                within,
+            };
+            count += usize::from(within.0 != 0);
+        }
+        self.waiting[lane].clear();
+        for &Bounded {
+            query,
+            ref bounds,
+            within,
+        } in &self.bounded[..count]
+        {
+            let (asked, best) = (&asked[query as usize], &mut best[query as usize]);
+            compare(index, group, asked, bounds, within, best);
+        }
+    }
+}
+
+/// Offers the rows of those leaves of a group that are `within` the limit.
+#[inline(always)]
+fn compare(
+    index: &Index,
+    group: usize,
+    asked: &Asked,
+    bounds: &[f32; LANES],
+    within: Within,
+    best: &mut Best,
+) {
+    for lane in within {
+        // The best may have come nearer since.
+        if bounds[lane] > best.limit {
+            continue;
+        }
+        let leaf = group * LANES + lane;
+        let distances = distances(&index.tree.leaves[leaf], asked.query);
+        let mut nearer = false;
+        for distance in distances {
+            nearer |= distance <= best.nearest.distance;
+        }
+        if !nearer {
+            continue;
+        }
+        for (&id, distance) in index.tree.ids[leaf].iter().zip(distances) {
+            best.offer(id, distance, asked.slack);
+        }
+    }
+}
+
+/// The lanes whose bounds let something through, a byte each: found without a branch for every lane.
+#[derive(Clone, Copy)]
+struct Within(u128);
+
+impl Within {
+    #[inline(always)]
+    fn of(bounds: &[f32; LANES], limit: f32) -> Self {
+        // Not the other way round: a bound that is no number skips nothing.
+        let within = bounds.map(|bound| u8::from(bound > limit) ^ 1);
+        // Taken from memory: otherwise the compiler asks for each lane alone.
+        Within(u128::from_le_bytes(std::hint::black_box(within)))
+    }
+}
+
+impl Iterator for Within {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let lane = self.0.trailing_zeros() as usize / 8;
+        self.0 &= self.0.wrapping_sub(1);
+        (lane < LANES).then_some(lane)
+    }
+}
+
+/// What has the least bounds, and these, rising.
+#[derive(Clone, Copy)]
+struct Near([(f32, usize); FIRST]);
+
+impl Near {
+    const NONE: Near = Near([(f32::INFINITY, usize::MAX); FIRST]);
+
+    /// Sixteen bounds, of what has the numbers from `first` on.
+    #[inline(always)]
+    fn offer(&mut self, bounds: &[f32; LANES], first: usize) {
+        let mut nearer = false;
+        for &bound in bounds {
+            nearer |= bound < self.0[FIRST - 1].0;
+        }
+        if !nearer {
+            return;
+        }
+        for (lane, &bound) in bounds.iter().enumerate() {
+            if bound < self.0[FIRST - 1].0 {
+                let at = self.0.iter().filter(|near| near.0 <= bound).count();
+                self.0[at..].rotate_right(1);
+                self.0[at] = (bound, first + lane);
+            }
+        }
+    }
+}
+
+/// Squared distances to sixteen boxes, on top of what is known of the poses.
+#[inline(always)]
+fn outside(boxes: &Boxes, asked: &[f32; TRAJECTORY], poses: [f32; LANES]) -> [f32; LANES] {
+    let mut sum = poses;
+    for ((lows, highs), &asked) in boxes.low.iter().zip(&boxes.high).zip(asked) {
+        for ((sum, &low), &high) in sum.iter_mut().zip(lows).zip(highs) {
+            let (below, above) = (low - asked, asked - high);
+            let outside = if below > above { below } else { above };
+            let outside = if outside > 0.0 { outside } else { 0.0 };
+            *sum = outside.mul_add(outside, *sum);
+        }
+    }
+    sum
+}
+
+/// Squared distances to sixteen rows, in the four interleaved sums of
+/// [`squared`](crate::kernels::search_exact::squared).
+#[inline(always)]
+fn distances(Lanes(rows): &Lanes, query: &[f32; PADDED]) -> [f32; LANES] {
+    let mut sums = [[0.0; LANES]; 4];
+    for quad in 0..FEATURE / 4 {
+        for (i, sum) in sums.iter_mut().enumerate() {
+            add(&rows[4 * quad + i], query[4 * quad + i], sum);
+        }
+    }
+    for (i, sum) in sums.iter_mut().enumerate().take(FEATURE % 4) {
+        add(&rows[FEATURE / 4 * 4 + i], query[FEATURE / 4 * 4 + i], sum);
+    }
+    let [a, b, c, d] = sums;
+    let mut joined = [0.0; LANES];
+    for (lane, joined) in joined.iter_mut().enumerate() {
+        *joined = (a[lane] + b[lane]) + (c[lane] + d[lane]);
+    }
+    joined
+}
+
+#[inline(always)]
+fn add(rows: &[f32; LANES], asked: f32, sums: &mut [f32; LANES]) {
+    for (sum, &row) in sums.iter_mut().zip(rows) {
+        let difference = row - asked;
+        *sum = difference.mul_add(difference, *sum);
+    }
+}
