@@ -83,7 +83,7 @@ pub fn nearest(index: &Index, frames: &[u32], queries: &[[f32; PADDED]], found: 
     let regions = bounds.chunks_exact(asked.len());
     let regions = regions.take(index.tree.outer.len()).enumerate();
     if let ([asked], [best]) = (&asked[..], &mut best[..]) {
-        // Nothing to share.
+        // Nothing to share, and each step would wait for the one before.
         regions.for_each(|(region, bounds)| alone(index, region, bounds[0], asked, best));
     } else {
         let mut steps = Steps::new(asked.len());
@@ -107,7 +107,8 @@ fn to_regions(index: &Index, asked: &mut [Asked]) -> Vec<f32> {
     for (at, boxes) in index.tree.regions.iter().enumerate() {
         let all = &mut all[at * LANES * count..][..LANES * count];
         for (i, asked) in asked.iter_mut().enumerate() {
-            let bounds = outside(boxes, &asked.trajectory, asked.poses.to_regions(at));
+            let known = index.poses.squares(asked.poses.to_regions(at));
+            let bounds = outside(boxes, &asked.trajectory, known);
             asked.near.offer(&bounds, at * LANES);
             for (of_region, bound) in all.chunks_exact_mut(count).zip(bounds) {
                 of_region[i] = bound;
@@ -122,9 +123,8 @@ fn to_regions(index: &Index, asked: &mut [Asked]) -> Vec<f32> {
 fn seed(index: &Index, asked: &mut Asked) -> Best {
     let mut near = Near::NONE;
     for (_, region) in asked.near.0 {
-        if let Some(boxes) = index.tree.outer.get(region) {
-            let poses = asked.poses.to_groups(region);
-            near.offer(&outside(boxes, &asked.trajectory, poses), region * LANES);
+        if region < index.tree.outer.len() {
+            near.offer(&to_groups(index, region, asked), region * LANES);
         }
     }
     asked.near = near;
@@ -145,8 +145,7 @@ fn alone(index: &Index, region: usize, bound: f32, asked: &Asked, best: &mut Bes
     if bound > best.limit {
         return;
     }
-    let poses = asked.poses.to_groups(region);
-    let groups = outside(&index.tree.outer[region], &asked.trajectory, poses);
+    let groups = to_groups(index, region, asked);
     for lane in Within::of(&groups, best.limit) {
         let group = region * LANES + lane;
         if groups[lane] > best.limit || !asked.awaits(index, group) {
@@ -156,6 +155,13 @@ fn alone(index: &Index, region: usize, bound: f32, asked: &Asked, best: &mut Bes
         let within = Within::of(&bounds, best.limit);
         compare(index, group, asked, &bounds, within, best);
     }
+}
+
+/// Squared distances to the groups of a region at least.
+#[inline(always)]
+fn to_groups(index: &Index, region: usize, asked: &Asked) -> [f32; LANES] {
+    let known = index.poses.squares(asked.poses.to_groups(region));
+    outside(&index.tree.outer[region], &asked.trajectory, known)
 }
 
 /// Squared distances to the leaves of a group at least, of whose poses these are the codes.
@@ -223,10 +229,8 @@ impl Steps {
             // Not the other way round: a bound that is no number skips nothing.
             count += usize::from(bound > best.limit) ^ 1;
         }
-        let boxes = &index.tree.outer[region];
         for (&query, bounded) in self.queries[..count].iter().zip(&mut self.bounded) {
-            let asked = &asked[query as usize];
-            let bounds = outside(boxes, &asked.trajectory, asked.poses.to_groups(region));
+            let bounds = to_groups(index, region, &asked[query as usize]);
             *bounded = Bounded {
                 query,
                 bounds,

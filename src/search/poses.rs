@@ -161,7 +161,10 @@ impl Poses {
     /// Squares of the distances that codes stand for.
     #[inline(always)]
     pub fn squares(&self, codes: [u8; LANES]) -> [f32; LANES] {
-        squares(codes, self.shape.step)
+        codes.map(|code| {
+            let distance = f32::from(code) * self.shape.step;
+            distance * distance
+        })
     }
 
     /// What is known of some frames' poses, copied together: so it is fetched in a row, and not here and
@@ -206,48 +209,36 @@ impl Gathered<'_> {
     /// Of the frame `at` that place.
     #[inline(always)]
     pub fn row(&self, at: usize) -> Row<'_> {
-        let Shape { groups, step, .. } = self.poses.shape;
+        let groups = self.poses.shape.groups;
         let first = at * groups;
         let regions = groups.div_ceil(LANES);
         Row {
             by_region: &self.by_region[at * regions..][..regions],
             by_group: &self.by_group[first..][..groups],
             by_leaf: self.by_leaf.get(first..first + groups),
-            step,
         }
     }
 }
 
-/// Lower bounds of one frame's squared distances to the poses of all leaves.
+/// Codes of one frame's least distances to the poses of all leaves.
 #[derive(Clone, Copy)]
 pub struct Row<'a> {
     by_region: &'a [u8],
     by_group: &'a [u8],
     by_leaf: Option<&'a [[u8; LANES]]>,
-    step: f32,
 }
 
 impl Row<'_> {
     /// To the regions `at` that place among all, sixteen at a time; 0 for those past the end.
     #[inline(always)]
-    pub fn to_regions(self, at: usize) -> [f32; LANES] {
-        self.sixteen(&self.by_region[at * LANES..])
+    pub fn to_regions(self, at: usize) -> [u8; LANES] {
+        sixteen(&self.by_region[at * LANES..])
     }
 
     /// To the groups of a region; 0 for those past the end.
     #[inline(always)]
-    pub fn to_groups(self, region: usize) -> [f32; LANES] {
-        self.sixteen(&self.by_group[region * LANES..])
-    }
-
-    #[inline(always)]
-    fn sixteen(self, codes: &[u8]) -> [f32; LANES] {
-        let mut padded = [0; LANES];
-        match codes.first_chunk() {
-            Some(full) => padded = *full,
-            None => padded[..codes.len()].copy_from_slice(codes),
-        }
-        squares(padded, self.step)
+    pub fn to_groups(self, region: usize) -> [u8; LANES] {
+        sixteen(&self.by_group[region * LANES..])
     }
 
     /// To the leaves of a group.
@@ -260,15 +251,18 @@ impl Row<'_> {
     }
 }
 
+/// The first sixteen codes; 0 for those past the end.
 #[inline(always)]
-fn squares(codes: [u8; LANES], step: f32) -> [f32; LANES] {
-    codes.map(|code| {
-        let distance = f32::from(code) * step;
-        distance * distance
-    })
+fn sixteen(codes: &[u8]) -> [u8; LANES] {
+    let mut padded = [0; LANES];
+    match codes.first_chunk() {
+        Some(full) => padded = *full,
+        None => padded[..codes.len()].copy_from_slice(codes),
+    }
+    padded
 }
 
-/// Of the codes of a region's groups.
+/// Of the codes of a region's groups; sixteen, which almost all have, apart: that needs no loop.
 #[inline(always)]
 fn least(codes: &[u8]) -> u8 {
     match codes.first_chunk::<LANES>() {
