@@ -6,30 +6,35 @@ use super::poses::Row;
 use super::tree::{Boxes, LANES, Lanes};
 use super::{Index, Nearest, length};
 use crate::motion::database::PADDED;
-use crate::motion::features::{FEATURE, TRAJECTORY};
+use crate::motion::features::{FEATURE, POSE, TRAJECTORY};
 use multiversion::multiversion;
 
 /// Regions of a query, and of their groups, that are looked into before all others: their winner lets
 /// most of those be skipped.
 const FIRST: usize = 2;
 
-/// What is asked, in the forms the bounds need.
+/// What is asked, in the forms the bounds need, and the best answer so far. In this order what a step
+/// needs lies in one or two lines of the cache.
+#[repr(C, align(64))]
 struct Asked<'a> {
-    query: &'a [f32; PADDED],
-    poses: Row<'a>,
-    trajectory: [f32; TRAJECTORY],
-    /// Groups that are looked into before all others.
-    near: Near,
+    query: [f32; PADDED],
     /// Rounding may lengthen a bound (no square) by this and by [`RELATIVE`]: a rotated number
     /// and its difference to another have errors of a few 2^-24 of the two vectors' lengths.
     slack: f32,
+    best: Best,
+    /// Where its trajectory and its pose lie among the boxes of the leaves.
+    among: ([u16; TRAJECTORY], [u16; POSE]),
+    trajectory: [f32; TRAJECTORY],
+    /// Groups that are looked into before all others.
+    near: Near,
+    poses: Row<'a>,
 }
 
 impl Asked<'_> {
     /// Whether there is such a group, and it was not looked into yet.
     #[inline(always)]
     fn awaits(&self, index: &Index, group: usize) -> bool {
-        group < index.tree.inner.len() && self.near.0.iter().all(|near| near.1 != group)
+        group < index.tree.inner.len() && self.near.0.iter().all(|near| near.1 as usize != group)
     }
 }
 
@@ -70,32 +75,37 @@ impl Best {
 ))]
 pub fn nearest(index: &Index, frames: &[u32], queries: &[[f32; PADDED]], found: &mut [Nearest]) {
     let poses = index.poses.gather(frames);
-    let asked = |(at, query)| Asked {
-        query,
-        poses: poses.row(at),
-        trajectory: index.axes.turn(query),
-        near: Near::NONE,
-        slack: SLACK * (index.longest + length(query)),
+    let asked = |(at, query)| {
+        let trajectory = index.axes.turn(query);
+        Asked {
+            query: *query,
+            slack: SLACK * (index.longest + length(query)),
+            best: Best::NONE,
+            among: (index.tree.grid.place(&trajectory), index.poses.place(query)),
+            trajectory,
+            near: Near::NONE,
+            poses: poses.row(at),
+        }
     };
     let mut asked: Vec<Asked> = queries.iter().enumerate().map(asked).collect();
     let bounds = to_regions(index, &mut asked);
-    let mut best: Vec<Best> = asked.iter_mut().map(|asked| seed(index, asked)).collect();
+    asked.iter_mut().for_each(|asked| seed(index, asked));
     let regions = bounds.chunks_exact(asked.len());
     let regions = regions.take(index.tree.outer.len()).enumerate();
-    if let ([asked], [best]) = (&asked[..], &mut best[..]) {
+    if let [asked] = &mut asked[..] {
         // Nothing to share, and each step would wait for the one before.
-        regions.for_each(|(region, bounds)| alone(index, region, bounds[0], asked, best));
+        regions.for_each(|(region, bounds)| alone(index, region, bounds[0], asked));
     } else {
         let mut steps = Steps::new(asked.len());
         for (region, bounds) in regions {
-            steps.groups(index, region, bounds, &asked, &best);
+            steps.groups(index, region, bounds, &asked);
             for lane in 0..LANES {
-                steps.leaves(index, region, lane, &asked, &mut best);
+                steps.leaves(index, region, lane, &mut asked);
             }
         }
     }
-    for (found, best) in found.iter_mut().zip(best) {
-        *found = best.nearest;
+    for (found, asked) in found.iter_mut().zip(asked) {
+        *found = asked.best.nearest;
     }
 }
 
@@ -120,40 +130,52 @@ fn to_regions(index: &Index, asked: &mut [Asked]) -> Vec<f32> {
 
 /// A first answer: of the nearest groups of the nearest regions, which take their place in `near`.
 #[inline(always)]
-fn seed(index: &Index, asked: &mut Asked) -> Best {
+fn seed(index: &Index, asked: &mut Asked) {
     let mut near = Near::NONE;
     for (_, region) in asked.near.0 {
+        let region = region as usize;
         if region < index.tree.outer.len() {
             near.offer(&to_groups(index, region, asked), region * LANES);
         }
     }
     asked.near = near;
-    let mut best = Best::NONE;
     for (_, group) in near.0 {
+        let group = group as usize;
         if group < index.tree.inner.len() {
             let bounds = to_leaves(index, group, asked, asked.poses.to_leaves(group));
-            let within = Within::of(&bounds, best.limit);
-            compare(index, group, asked, &bounds, within, &mut best);
+            // The nearest leaf first: its winner lets most of the others be skipped.
+            let nearest = Within::of(&bounds, least(&bounds));
+            compare(index, group, asked, &bounds, nearest);
+            let others = Within(Within::of(&bounds, asked.best.limit).0 & !nearest.0);
+            compare(index, group, asked, &bounds, others);
         }
     }
-    best
+}
+
+#[inline(always)]
+fn least(bounds: &[f32; LANES]) -> f32 {
+    let mut least = f32::INFINITY;
+    for &bound in bounds {
+        least = if bound < least { bound } else { least };
+    }
+    least
 }
 
 /// Lets a single query look into the groups of a region, of which a bound is known, and their leaves.
 #[inline(always)]
-fn alone(index: &Index, region: usize, bound: f32, asked: &Asked, best: &mut Best) {
-    if bound > best.limit {
+fn alone(index: &Index, region: usize, bound: f32, asked: &mut Asked) {
+    if bound > asked.best.limit {
         return;
     }
     let groups = to_groups(index, region, asked);
-    for lane in Within::of(&groups, best.limit) {
+    for lane in Within::of(&groups, asked.best.limit) {
         let group = region * LANES + lane;
-        if groups[lane] > best.limit || !asked.awaits(index, group) {
+        if groups[lane] > asked.best.limit || !asked.awaits(index, group) {
             continue;
         }
         let bounds = to_leaves(index, group, asked, asked.poses.to_leaves(group));
-        let within = Within::of(&bounds, best.limit);
-        compare(index, group, asked, &bounds, within, best);
+        let within = Within::of(&bounds, asked.best.limit);
+        compare(index, group, asked, &bounds, within);
     }
 }
 
@@ -167,9 +189,15 @@ fn to_groups(index: &Index, region: usize, asked: &Asked) -> [f32; LANES] {
 /// Squared distances to the leaves of a group at least, of whose poses these are the codes.
 #[inline(always)]
 fn to_leaves(index: &Index, group: usize, asked: &Asked, codes: [u8; LANES]) -> [f32; LANES] {
-    let known = index.poses.squares(codes);
-    let mut bounds = outside(&index.tree.inner[group], &asked.trajectory, known);
-    index.poses.raise(group, codes, asked.query, &mut bounds);
+    let (trajectory, pose) = &asked.among;
+    let mut bounds = index
+        .tree
+        .grid
+        .outside(&index.tree.inner[group], trajectory);
+    for (bound, known) in bounds.iter_mut().zip(index.poses.squares(codes)) {
+        *bound += known;
+    }
+    index.poses.raise(group, codes, pose, &mut bounds);
     bounds
 }
 
@@ -215,26 +243,20 @@ impl Steps {
 
     /// Finds the queries that have to look into the groups of a region, of which `bounds` are known.
     #[inline(always)]
-    fn groups(
-        &mut self,
-        index: &Index,
-        region: usize,
-        bounds: &[f32],
-        asked: &[Asked],
-        best: &[Best],
-    ) {
+    fn groups(&mut self, index: &Index, region: usize, bounds: &[f32], asked: &[Asked]) {
         let mut count = 0;
-        for (i, (&bound, best)) in bounds.iter().zip(best).enumerate() {
+        for (i, (&bound, asked)) in bounds.iter().zip(asked).enumerate() {
             self.queries[count] = i as u32;
             // Not the other way round: a bound that is no number skips nothing.
-            count += usize::from(bound > best.limit) ^ 1;
+            count += usize::from(bound > asked.best.limit) ^ 1;
         }
         for (&query, bounded) in self.queries[..count].iter().zip(&mut self.bounded) {
-            let bounds = to_groups(index, region, &asked[query as usize]);
+            let asked = &asked[query as usize];
+            let bounds = to_groups(index, region, asked);
             *bounded = Bounded {
                 query,
                 bounds,
-                within: Within::of(&bounds, best[query as usize].limit),
+                within: Within::of(&bounds, asked.best.limit),
             };
         }
         for Bounded {
@@ -259,14 +281,7 @@ impl Steps {
 
     /// Lets queries look into the leaves of a group.
     #[inline(always)]
-    fn leaves(
-        &mut self,
-        index: &Index,
-        region: usize,
-        lane: usize,
-        asked: &[Asked],
-        best: &mut [Best],
-    ) {
+    fn leaves(&mut self, index: &Index, region: usize, lane: usize, asked: &mut [Asked]) {
         let group = region * LANES + lane;
         let mut count = 0;
         for &Waiting {
@@ -275,12 +290,12 @@ impl Steps {
             codes,
         } in &self.waiting[lane]
         {
-            let (asked, best) = (&asked[query as usize], &best[query as usize]);
-            if bound > best.limit {
+            let asked = &asked[query as usize];
+            if bound > asked.best.limit {
                 continue;
             }
             let bounds = to_leaves(index, group, asked, codes);
-            let within = Within::of(&bounds, best.limit);
+            let within = Within::of(&bounds, asked.best.limit);
             self.bounded[count] = Bounded {
                 query,
                 bounds,
@@ -295,38 +310,30 @@ impl Steps {
             within,
         } in &self.bounded[..count]
         {
-            let (asked, best) = (&asked[query as usize], &mut best[query as usize]);
-            compare(index, group, asked, bounds, within, best);
+            compare(index, group, &mut asked[query as usize], bounds, within);
         }
     }
 }
 
 /// Offers the rows of those leaves of a group that are `within` the limit.
 #[inline(always)]
-fn compare(
-    index: &Index,
-    group: usize,
-    asked: &Asked,
-    bounds: &[f32; LANES],
-    within: Within,
-    best: &mut Best,
-) {
+fn compare(index: &Index, group: usize, asked: &mut Asked, bounds: &[f32; LANES], within: Within) {
     for lane in within {
         // The best may have come nearer since.
-        if bounds[lane] > best.limit {
+        if bounds[lane] > asked.best.limit {
             continue;
         }
         let leaf = group * LANES + lane;
-        let distances = distances(&index.tree.leaves[leaf], asked.query);
+        let distances = distances(&index.tree.leaves[leaf], &asked.query);
         let mut nearer = false;
         for distance in distances {
-            nearer |= distance <= best.nearest.distance;
+            nearer |= distance <= asked.best.nearest.distance;
         }
         if !nearer {
             continue;
         }
         for (&id, distance) in index.tree.ids[leaf].iter().zip(distances) {
-            best.offer(id, distance, asked.slack);
+            asked.best.offer(id, distance, asked.slack);
         }
     }
 }
@@ -358,10 +365,10 @@ impl Iterator for Within {
 
 /// What has the least bounds, and these, rising.
 #[derive(Clone, Copy)]
-struct Near([(f32, usize); FIRST]);
+struct Near([(f32, u32); FIRST]);
 
 impl Near {
-    const NONE: Near = Near([(f32::INFINITY, usize::MAX); FIRST]);
+    const NONE: Near = Near([(f32::INFINITY, u32::MAX); FIRST]);
 
     /// Sixteen bounds, of what has the numbers from `first` on.
     #[inline(always)]
@@ -377,7 +384,7 @@ impl Near {
             if bound < self.0[FIRST - 1].0 {
                 let at = self.0.iter().filter(|near| near.0 <= bound).count();
                 self.0[at..].rotate_right(1);
-                self.0[at] = (bound, first + lane);
+                self.0[at] = (bound, (first + lane) as u32);
             }
         }
     }
@@ -402,16 +409,19 @@ fn outside(boxes: &Boxes, asked: &[f32; TRAJECTORY], poses: [f32; LANES]) -> [f3
 /// [`squared`](crate::kernels::search_exact::squared).
 #[inline(always)]
 fn distances(Lanes(rows): &Lanes, query: &[f32; PADDED]) -> [f32; LANES] {
-    let mut sums = [[0.0; LANES]; 4];
-    for quad in 0..FEATURE / 4 {
-        for (i, sum) in sums.iter_mut().enumerate() {
-            add(&rows[4 * quad + i], query[4 * quad + i], sum);
-        }
+    let (mut a, mut b, mut c, mut d) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    for at in (0..FEATURE).step_by(4) {
+        add(&rows[at], query[at], &mut a);
     }
-    for (i, sum) in sums.iter_mut().enumerate().take(FEATURE % 4) {
-        add(&rows[FEATURE / 4 * 4 + i], query[FEATURE / 4 * 4 + i], sum);
+    for at in (1..FEATURE).step_by(4) {
+        add(&rows[at], query[at], &mut b);
     }
-    let [a, b, c, d] = sums;
+    for at in (2..FEATURE).step_by(4) {
+        add(&rows[at], query[at], &mut c);
+    }
+    for at in (3..FEATURE).step_by(4) {
+        add(&rows[at], query[at], &mut d);
+    }
     let mut joined = [0.0; LANES];
     for (lane, joined) in joined.iter_mut().enumerate() {
         *joined = (a[lane] + b[lane]) + (c[lane] + d[lane]);

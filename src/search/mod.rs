@@ -9,6 +9,7 @@
 
 mod axes;
 mod batch;
+mod grid;
 mod packed;
 mod poses;
 mod tree;

@@ -42,7 +42,7 @@ impl Packed {
         }
         for inner in &tree.inner {
             for lane in 0..LANES {
-                boxes.extend([corner(&inner.low, lane), corner(&inner.high, lane)]);
+                boxes.extend([&inner.low, &inner.high].map(|of| tree.grid.corner(of, lane)));
             }
         }
         let mut codes = bytemuck::cast_slice(&poses.block_of).to_vec();

@@ -5,6 +5,7 @@
 //! pose of the one to any pose of the other, rounded down to a byte. Where memory is too short for a
 //! byte for every leaf, boxes around the leaves' poses take their place.
 
+use super::grid::{Grid, Rounded};
 use super::tree::{self, LANES, Lanes, Tree};
 use crate::motion::database::PADDED;
 use crate::motion::features::POSE;
@@ -20,8 +21,9 @@ pub struct Poses {
     pub by_group: Vec<u8>,
     /// `[blocks][groups][LANES]`; empty where memory was short.
     pub by_leaf: Vec<[u8; LANES]>,
+    grid: Grid<POSE>,
     /// Around the leaves' poses, `[groups]`; only where memory was short.
-    boxes: Vec<Boxes>,
+    boxes: Vec<Rounded<POSE>>,
 }
 
 /// Sixteen boxes around poses.
@@ -40,8 +42,8 @@ pub struct Shape {
     pub step: f32,
 }
 
-/// Frames a block, from the tightest on.
-const BLOCKS: [usize; 6] = [4, 8, 16, 32, 64, 128];
+/// Frames a block, at least and at most.
+const BLOCK: [usize; 2] = [4, 128];
 /// The largest blocks that are worth a code for every leaf.
 const BY_LEAF: usize = 16;
 /// Keeps a code's distance below the true one whatever was rounded on the way.
@@ -56,11 +58,11 @@ impl Poses {
         let memory = memory.saturating_sub(size_of::<u32>() * (frames.len() + 1));
         let find = |codes: usize| {
             let fits = |&block: &usize| frames.len().div_ceil(block) * groups * codes <= memory;
-            BLOCKS.into_iter().find(fits)
+            (BLOCK[0]..BLOCK[1]).find(fits)
         };
         let (block, lanes) = match find(LANES + 1) {
             Some(block) if block <= BY_LEAF => (block, LANES),
-            _ => (find(1).unwrap_or(BLOCKS[BLOCKS.len() - 1]), 0),
+            _ => (find(1).unwrap_or(BLOCK[1]), 0),
         };
         let (order, block_of) = sorted(frames, block);
         let sorted: Vec<_> = order.iter().map(|&at| frames[at as usize]).collect();
@@ -75,6 +77,7 @@ impl Poses {
             block_of,
             by_group: vec![0; blocks * groups],
             by_leaf: vec![[0; LANES]; blocks * groups * lanes / LANES],
+            grid: grid(frames),
             boxes: Vec::new(),
         };
         let boxes = boxes(tree);
@@ -97,7 +100,7 @@ impl Poses {
                 }
             });
         if !fine {
-            poses.boxes = boxes;
+            poses.boxes = widen(&poses.grid, &boxes);
         }
         poses
     }
@@ -118,8 +121,9 @@ impl Poses {
         let fits = by_group.len() == codes.next_multiple_of(4)
             && (by_leaf.is_empty() || by_leaf.len() == codes);
         by_group.truncate(codes);
+        let grid = grid(frames);
         let boxes = match by_leaf.is_empty() {
-            true => boxes(tree),
+            true => widen(&grid, &boxes(tree)),
             false => Vec::new(),
         };
         fits.then(|| Poses {
@@ -127,6 +131,7 @@ impl Poses {
             shape,
             by_group,
             by_leaf,
+            grid,
             boxes,
         })
     }
@@ -138,6 +143,12 @@ impl Poses {
             + size_of_val(&self.boxes[..])
     }
 
+    /// Where the pose of a query, a row of the database, lies among the boxes.
+    #[inline(always)]
+    pub fn place(&self, query: &[f32; PADDED]) -> [u16; POSE] {
+        self.grid.place(query)
+    }
+
     /// Raises bounds of a group's leaves that begin with these `codes` by what the boxes around the leaves'
     /// poses say besides, where there are boxes.
     #[inline(always)]
@@ -145,13 +156,13 @@ impl Poses {
         &self,
         group: usize,
         codes: [u8; LANES],
-        query: &[f32; PADDED],
+        place: &[u16; POSE],
         bounds: &mut [f32; LANES],
     ) {
         let Some(boxes) = self.boxes.get(group) else {
             return;
         };
-        let outside = boxes.outside(query, query);
+        let outside = self.grid.outside(boxes, place);
         for ((bound, known), outside) in bounds.iter_mut().zip(self.squares(codes)).zip(outside) {
             let more = outside - known;
             *bound += if more > 0.0 { more } else { 0.0 };
@@ -334,6 +345,17 @@ impl Boxes {
 fn boxes(tree: &Tree) -> Vec<Boxes> {
     let around: Vec<Around> = tree.leaves.par_iter().map(Around::leaf).collect();
     around.chunks(LANES).map(Boxes::pack).collect()
+}
+
+/// Of all poses.
+fn grid(frames: &[[f32; PADDED]]) -> Grid<POSE> {
+    let Around { low, high } = Around::frames(frames);
+    Grid::around(&low, &high)
+}
+
+fn widen(grid: &Grid<POSE>, boxes: &[Boxes]) -> Vec<Rounded<POSE>> {
+    let widen = |boxes: &Boxes| grid.widen(&boxes.low, &boxes.high);
+    boxes.iter().map(widen).collect()
 }
 
 /// The box around some poses.

@@ -2,6 +2,7 @@
 //! sixteen leaves a group, sixteen groups a region.
 
 use super::axes::Axes;
+use super::grid::{Grid, Rounded};
 use crate::motion::database::PADDED;
 use crate::motion::features::{FEATURE, POSE, TRAJECTORY};
 use rayon::prelude::*;
@@ -34,8 +35,10 @@ pub struct Tree {
     pub leaves: Vec<Lanes>,
     /// Original index of every row of every leaf.
     pub ids: Vec<[u32; LANES]>,
+    /// Of the boxes of the leaves.
+    pub grid: Grid<TRAJECTORY>,
     /// Boxes of the leaves, by group.
-    pub inner: Vec<Boxes>,
+    pub inner: Vec<Rounded<TRAJECTORY>>,
     /// Boxes of the groups, by region.
     pub outer: Vec<Boxes>,
     /// Boxes of the regions, sixteen at a time.
@@ -82,10 +85,14 @@ impl Tree {
         }
         let groups = joined(&corners);
         let regions = joined(&groups);
+        let [low, high] = regions.iter().copied().fold(NOTHING, around);
+        let grid = Grid::around(&low, &high);
+        let boxes = corners.chunks(LANES).map(pack);
         Tree {
             leaves,
             ids,
-            inner: corners.chunks(LANES).map(pack).collect(),
+            inner: boxes.map(|of| grid.widen(&of.low, &of.high)).collect(),
+            grid,
             outer: groups.chunks(LANES).map(pack).collect(),
             regions: regions.chunks(LANES).map(pack).collect(),
         }
