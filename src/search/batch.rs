@@ -2,16 +2,17 @@
 //! has been fetched from memory serves them all. A step is made for all queries before the next one
 //! begins, so that the processor need not wait for one query's bounds to know what to do for another.
 
+use super::grid::{POSE_PAIRS, Place, TRAJECTORY_PAIRS};
 use super::poses::Row;
 use super::tree::{Boxes, LANES, Lanes};
 use super::{Index, Nearest, length};
 use crate::motion::database::PADDED;
-use crate::motion::features::{FEATURE, POSE, TRAJECTORY};
+use crate::motion::features::{FEATURE, TRAJECTORY};
 use multiversion::multiversion;
 
-/// Regions of a query, and of their groups, that are looked into before all others: their winner lets
-/// most of those be skipped.
-const FIRST: usize = 2;
+/// The nearest regions of a query, and of their groups, of which the nearest leaf is looked into before all
+/// else: the winner lets most of that be skipped.
+const FIRST: usize = 3;
 
 /// What is asked, in the forms the bounds need, and the best answer so far. In this order what a step
 /// needs lies in one or two lines of the cache.
@@ -23,19 +24,11 @@ struct Asked<'a> {
     slack: f32,
     best: Best,
     /// Where its trajectory and its pose lie among the boxes of the leaves.
-    among: ([u16; TRAJECTORY], [u16; POSE]),
+    among: (Place<TRAJECTORY_PAIRS>, Place<POSE_PAIRS>),
     trajectory: [f32; TRAJECTORY],
-    /// Groups that are looked into before all others.
+    /// Its nearest regions.
     near: Near,
     poses: Row<'a>,
-}
-
-impl Asked<'_> {
-    /// Whether there is such a group, and it was not looked into yet.
-    #[inline(always)]
-    fn awaits(&self, index: &Index, group: usize) -> bool {
-        group < index.tree.inner.len() && self.near.0.iter().all(|near| near.1 as usize != group)
-    }
 }
 
 const RELATIVE: f32 = 1.0 + 1e-5;
@@ -128,27 +121,17 @@ fn to_regions(index: &Index, asked: &mut [Asked]) -> Vec<f32> {
     all
 }
 
-/// A first answer: of the nearest groups of the nearest regions, which take their place in `near`.
+/// A first answer: of the nearest leaf of each of the nearest groups of the nearest regions.
 #[inline(always)]
 fn seed(index: &Index, asked: &mut Asked) {
     let mut near = Near::NONE;
-    for (_, region) in asked.near.0 {
-        let region = region as usize;
-        if region < index.tree.outer.len() {
-            near.offer(&to_groups(index, region, asked), region * LANES);
-        }
+    for region in asked.near.below(index.tree.outer.len()) {
+        near.offer(&to_groups(index, region, asked), region * LANES);
     }
-    asked.near = near;
-    for (_, group) in near.0 {
-        let group = group as usize;
-        if group < index.tree.inner.len() {
-            let bounds = to_leaves(index, group, asked, asked.poses.to_leaves(group));
-            // The nearest leaf first: its winner lets most of the others be skipped.
-            let nearest = Within::of(&bounds, least(&bounds));
-            compare(index, group, asked, &bounds, nearest);
-            let others = Within(Within::of(&bounds, asked.best.limit).0 & !nearest.0);
-            compare(index, group, asked, &bounds, others);
-        }
+    for group in near.below(index.tree.inner.len()) {
+        let bounds = to_leaves(index, group, asked, asked.poses.to_leaves(group));
+        let nearest = Within::of(&bounds, least(&bounds));
+        compare(index, group, asked, &bounds, nearest);
     }
 }
 
@@ -168,11 +151,11 @@ fn alone(index: &Index, region: usize, bound: f32, asked: &mut Asked) {
         return;
     }
     let groups = to_groups(index, region, asked);
-    for lane in Within::of(&groups, asked.best.limit) {
-        let group = region * LANES + lane;
-        if groups[lane] > asked.best.limit || !asked.awaits(index, group) {
+    for lane in Within::of(&groups, asked.best.limit).of_region(index, region) {
+        if groups[lane] > asked.best.limit {
             continue;
         }
+        let group = region * LANES + lane;
         let bounds = to_leaves(index, group, asked, asked.poses.to_leaves(group));
         let within = Within::of(&bounds, asked.best.limit);
         compare(index, group, asked, &bounds, within);
@@ -256,25 +239,22 @@ impl Steps {
             *bounded = Bounded {
                 query,
                 bounds,
-                within: Within::of(&bounds, asked.best.limit),
+                within: Within::of(&bounds, asked.best.limit).of_region(index, region),
             };
         }
-        for Bounded {
+        for &Bounded {
             query,
-            bounds,
+            ref bounds,
             within,
         } in &self.bounded[..count]
         {
-            let at = *query as usize;
-            for lane in *within {
-                let group = region * LANES + lane;
-                if asked[at].awaits(index, group) {
-                    self.waiting[lane].push(Waiting {
-                        query: *query,
-                        bound: bounds[lane],
-                        codes: asked[at].poses.to_leaves(group),
-                    });
-                }
+            let poses = asked[query as usize].poses;
+            for lane in within {
+                self.waiting[lane].push(Waiting {
+                    query,
+                    bound: bounds[lane],
+                    codes: poses.to_leaves(region * LANES + lane),
+                });
             }
         }
     }
@@ -338,9 +318,9 @@ fn compare(index: &Index, group: usize, asked: &mut Asked, bounds: &[f32; LANES]
     }
 }
 
-/// The lanes whose bounds let something through, a byte each: found without a branch for every lane.
+/// The lanes whose bounds let something through, a bit each: found without a branch for every lane.
 #[derive(Clone, Copy)]
-struct Within(u128);
+struct Within(u32);
 
 impl Within {
     #[inline(always)]
@@ -348,7 +328,17 @@ impl Within {
         // Not the other way round: a bound that is no number skips nothing.
         let within = bounds.map(|bound| u8::from(bound > limit) ^ 1);
         // Taken from memory: otherwise the compiler asks for each lane alone.
-        Within(u128::from_le_bytes(std::hint::black_box(within)))
+        let bytes = u128::from_le_bytes(std::hint::black_box(within));
+        // The factor moves the lowest bit of byte i to bit i of the highest byte.
+        let bits = |bytes: u64| (bytes.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u32;
+        Within(bits(bytes as u64) | bits((bytes >> 64) as u64) << 8)
+    }
+
+    /// Without those for which the last region has no groups.
+    #[inline(always)]
+    fn of_region(self, index: &Index, region: usize) -> Self {
+        let groups = index.tree.inner.len() - region * LANES;
+        Within(self.0 & ((1 << groups.min(LANES)) - 1))
     }
 }
 
@@ -357,7 +347,7 @@ impl Iterator for Within {
 
     #[inline(always)]
     fn next(&mut self) -> Option<usize> {
-        let lane = self.0.trailing_zeros() as usize / 8;
+        let lane = self.0.trailing_zeros() as usize;
         self.0 &= self.0.wrapping_sub(1);
         (lane < LANES).then_some(lane)
     }
@@ -387,6 +377,13 @@ impl Near {
                 self.0[at] = (bound, (first + lane) as u32);
             }
         }
+    }
+
+    /// Those below `count`: what there is none of is infinitely far away only from what is a number.
+    #[inline(always)]
+    fn below(self, count: usize) -> impl Iterator<Item = usize> {
+        let numbers = self.0.into_iter().map(|near| near.1 as usize);
+        numbers.filter(move |&number| number < count)
     }
 }
 

@@ -4,26 +4,37 @@
 //! distances only become less.
 
 use super::tree::LANES;
+use crate::motion::features::{POSE, TRAJECTORY};
 
-/// Where `D` dimensions lie in whole numbers.
-pub struct Grid<const D: usize> {
+/// Where `D` dimensions lie in whole numbers, `P` pairs of them.
+pub struct Grid<const D: usize, const P: usize> {
     /// The corner of zeros.
     origin: [f32; D],
     /// Whole numbers a unit.
     fine: f32,
 }
 
-/// Sixteen boxes on a grid, dimension by dimension.
+/// Of the trajectory and of the pose.
+pub const TRAJECTORY_PAIRS: usize = TRAJECTORY.div_ceil(2);
+pub const POSE_PAIRS: usize = POSE.div_ceil(2);
+
+/// A place on a grid, or, of what has an odd number of dimensions, a 0 behind it.
+pub type Place<const P: usize> = [[u16; 2]; P];
+/// Corners of sixteen boxes, in pairs of dimensions, so that the two of a place that belong to them are
+/// one number of 32 bits, which processors spread to all lanes while they load it.
+pub type Corners<const P: usize> = [[u16; 2 * LANES]; P];
+
+/// Sixteen boxes on a grid.
 #[repr(align(64))]
-pub struct Rounded<const D: usize> {
-    pub low: [[u16; LANES]; D],
-    pub high: [[u16; LANES]; D],
+pub struct Rounded<const P: usize> {
+    pub low: Corners<P>,
+    pub high: Corners<P>,
 }
 
 /// The grid's width, of that of what it is made for: queries may lie beside that.
 const ROOM: f32 = 1.5;
 
-impl<const D: usize> Grid<D> {
+impl<const D: usize, const P: usize> Grid<D, P> {
     /// Around a box.
     pub fn around(low: &[f32; D], high: &[f32; D]) -> Self {
         let widths = low.iter().zip(high).map(|(low, high)| high - low);
@@ -37,56 +48,68 @@ impl<const D: usize> Grid<D> {
 
     /// Off by half a number, and by what rounding adds to that: a hundredth.
     #[inline(always)]
-    pub fn place(&self, values: &[f32]) -> [u16; D] {
-        let mut place = [0; D];
-        for ((place, value), origin) in place.iter_mut().zip(values).zip(self.origin) {
+    pub fn place(&self, values: &[f32]) -> Place<P> {
+        let mut place = [[0; 2]; P];
+        let all = place.as_flattened_mut().iter_mut();
+        for ((place, value), origin) in all.zip(values).zip(self.origin) {
             *place = ((value - origin) * self.fine + 0.5) as u16;
         }
         place
     }
 
     /// Boxes are wider by a number on each side: more than what is looked for can be off.
-    pub fn widen(&self, low: &[[f32; LANES]; D], high: &[[f32; LANES]; D]) -> Rounded<D> {
-        let corner = |of: &[[f32; LANES]; D], more: f32| {
-            let place = |d: usize, value: f32| (value - self.origin[d]) * self.fine + more;
-            std::array::from_fn(|d| of[d].map(|value| place(d, value) as u16))
-        };
+    pub fn widen(&self, low: &[[f32; LANES]; D], high: &[[f32; LANES]; D]) -> Rounded<P> {
         Rounded {
-            low: corner(low, -1.0),
-            high: corner(high, 2.0),
+            low: self.corners(low, -1.0),
+            high: self.corners(high, 2.0),
         }
     }
 
+    fn corners(&self, of: &[[f32; LANES]; D], more: f32) -> Corners<P> {
+        // All places behind the last dimension are 0, and so is the distance to these corners.
+        let mut corners = [[0; 2 * LANES]; P];
+        for (d, values) in of.iter().enumerate() {
+            for (lane, value) in values.iter().enumerate() {
+                let place = (value - self.origin[d]) * self.fine + more;
+                corners[d / 2][2 * lane + d % 2] = place as u16;
+            }
+        }
+        corners
+    }
+
     /// Where a corner of a box lies.
-    pub fn corner(&self, corners: &[[u16; LANES]; D], lane: usize) -> [f32; D] {
-        std::array::from_fn(|d| self.origin[d] + f32::from(corners[d][lane]) / self.fine)
+    pub fn corner(&self, corners: &Corners<P>, lane: usize) -> [f32; D] {
+        std::array::from_fn(|d| {
+            self.origin[d] + f32::from(corners[d / 2][2 * lane + d % 2]) / self.fine
+        })
     }
 
     /// Squared distances to boxes at least.
     #[inline(always)]
-    pub fn outside(&self, boxes: &Rounded<D>, place: &[u16; D]) -> [f32; LANES] {
+    pub fn outside(&self, boxes: &Rounded<P>, place: &Place<P>) -> [f32; LANES] {
         let unit = 65536.0 / (self.fine * self.fine);
-        boxes
-            .outside(place)
-            .map(|outside| f32::from(outside) * unit)
+        boxes.outside(place).map(|outside| outside as f32 * unit)
     }
 }
 
-impl<const D: usize> Rounded<D> {
+impl<const P: usize> Rounded<P> {
     /// Squared distances at least, in units of 65536: what a dimension has less than that is left out,
     /// and what there is more than fits stops at the greatest number.
     #[inline(always)]
-    fn outside(&self, place: &[u16; D]) -> [u16; LANES] {
-        let mut sum = [0u16; LANES];
+    fn outside(&self, place: &Place<P>) -> [u32; LANES] {
+        let mut sums = [0u16; 2 * LANES];
         for ((lows, highs), &place) in self.low.iter().zip(&self.high).zip(place) {
-            for ((sum, &low), &high) in sum.iter_mut().zip(lows).zip(highs) {
+            let places: [u16; 2 * LANES] = bytemuck::cast([bytemuck::cast::<_, u32>(place); LANES]);
+            for i in 0..2 * LANES {
                 // One of the two is 0.
-                let outside = low.saturating_sub(place) | place.saturating_sub(high);
+                let outside =
+                    lows[i].saturating_sub(places[i]) | places[i].saturating_sub(highs[i]);
                 let square = (u32::from(outside) * u32::from(outside)) >> 16;
-                *sum = sum.saturating_add(square as u16);
+                sums[i] = sums[i].saturating_add(square as u16);
             }
         }
-        sum
+        // Both halves, in whichever order.
+        bytemuck::cast::<_, [u32; LANES]>(sums).map(|pair| (pair & 0xffff) + (pair >> 16))
     }
 }
 
@@ -95,7 +118,7 @@ mod tests {
     use super::*;
     use crate::kernels::rng::{gaussian, random4};
 
-    const D: usize = 12;
+    const D: usize = 11;
 
     /// Sixteen boxes of random sizes, and the corners of the box around them.
     fn boxes(seed: u32, scale: f32, centre: f32) -> ([[f32; LANES]; D], [[f32; LANES]; D]) {
@@ -109,7 +132,7 @@ mod tests {
         (low, high)
     }
 
-    fn grid(low: &[[f32; LANES]; D], high: &[[f32; LANES]; D]) -> Grid<D> {
+    fn grid(low: &[[f32; LANES]; D], high: &[[f32; LANES]; D]) -> Grid<D, { D.div_ceil(2) }> {
         Grid::around(
             &low.map(|lanes| lanes.into_iter().fold(f32::INFINITY, f32::min)),
             &high.map(|lanes| lanes.into_iter().fold(f32::NEG_INFINITY, f32::max)),
@@ -139,7 +162,7 @@ mod tests {
             let (low, high) = boxes(seed as u32, scale, centre);
             let grid = grid(&low, &high);
             let rounded = grid.widen(&low, &high);
-            // What the greatest number stands for: the square of the grid's width.
+            // What the greatest number stands for at least: the square of the grid's width.
             let most = (f64::from(u16::MAX) / f64::from(grid.fine)).powi(2);
             for (query, away) in (0..400).zip([0.0, 0.5, 3.0, 1e3].into_iter().cycle()) {
                 let noise = |d: usize| gaussian(random4(99, query, d as u32, 0)).clamp(-2.0, 2.0);

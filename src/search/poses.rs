@@ -5,7 +5,7 @@
 //! pose of the one to any pose of the other, rounded down to a byte. Where memory is too short for a
 //! byte for every leaf, boxes around the leaves' poses take their place.
 
-use super::grid::{Grid, Rounded};
+use super::grid::{Grid, POSE_PAIRS, Place, Rounded};
 use super::tree::{self, LANES, Lanes, Tree};
 use crate::motion::database::PADDED;
 use crate::motion::features::POSE;
@@ -21,9 +21,9 @@ pub struct Poses {
     pub by_group: Vec<u8>,
     /// `[blocks][groups][LANES]`; empty where memory was short.
     pub by_leaf: Vec<[u8; LANES]>,
-    grid: Grid<POSE>,
+    grid: Grid<POSE, POSE_PAIRS>,
     /// Around the leaves' poses, `[groups]`; only where memory was short.
-    boxes: Vec<Rounded<POSE>>,
+    boxes: Vec<Rounded<POSE_PAIRS>>,
 }
 
 /// Sixteen boxes around poses.
@@ -145,7 +145,7 @@ impl Poses {
 
     /// Where the pose of a query, a row of the database, lies among the boxes.
     #[inline(always)]
-    pub fn place(&self, query: &[f32; PADDED]) -> [u16; POSE] {
+    pub fn place(&self, query: &[f32; PADDED]) -> Place<POSE_PAIRS> {
         self.grid.place(query)
     }
 
@@ -156,7 +156,7 @@ impl Poses {
         &self,
         group: usize,
         codes: [u8; LANES],
-        place: &[u16; POSE],
+        place: &Place<POSE_PAIRS>,
         bounds: &mut [f32; LANES],
     ) {
         let Some(boxes) = self.boxes.get(group) else {
@@ -348,12 +348,12 @@ fn boxes(tree: &Tree) -> Vec<Boxes> {
 }
 
 /// Of all poses.
-fn grid(frames: &[[f32; PADDED]]) -> Grid<POSE> {
+fn grid(frames: &[[f32; PADDED]]) -> Grid<POSE, POSE_PAIRS> {
     let Around { low, high } = Around::frames(frames);
     Grid::around(&low, &high)
 }
 
-fn widen(grid: &Grid<POSE>, boxes: &[Boxes]) -> Vec<Rounded<POSE>> {
+fn widen(grid: &Grid<POSE, POSE_PAIRS>, boxes: &[Boxes]) -> Vec<Rounded<POSE_PAIRS>> {
     let widen = |boxes: &Boxes| grid.widen(&boxes.low, &boxes.high);
     boxes.iter().map(widen).collect()
 }

@@ -2,7 +2,7 @@
 //! sixteen leaves a group, sixteen groups a region.
 
 use super::axes::Axes;
-use super::grid::{Grid, Rounded};
+use super::grid::{Grid, Rounded, TRAJECTORY_PAIRS};
 use crate::motion::database::PADDED;
 use crate::motion::features::{FEATURE, POSE, TRAJECTORY};
 use rayon::prelude::*;
@@ -36,9 +36,9 @@ pub struct Tree {
     /// Original index of every row of every leaf.
     pub ids: Vec<[u32; LANES]>,
     /// Of the boxes of the leaves.
-    pub grid: Grid<TRAJECTORY>,
+    pub grid: Grid<TRAJECTORY, TRAJECTORY_PAIRS>,
     /// Boxes of the leaves, by group.
-    pub inner: Vec<Rounded<TRAJECTORY>>,
+    pub inner: Vec<Rounded<TRAJECTORY_PAIRS>>,
     /// Boxes of the groups, by region.
     pub outer: Vec<Boxes>,
     /// Boxes of the regions, sixteen at a time.
