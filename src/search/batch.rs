@@ -2,7 +2,7 @@
 //! has been fetched from memory serves them all. A step is made for all queries before the next one
 //! begins, so that the processor need not wait for one query's bounds to know what to do for another.
 
-use super::grid::{POSE_PAIRS, Place, TRAJECTORY_PAIRS};
+use super::grid::{Beyond, POSE_PAIRS, Place, TRAJECTORY_PAIRS};
 use super::poses::Row;
 use super::tree::{Boxes, LANES, Lanes};
 use super::{Index, Nearest, length};
@@ -25,6 +25,9 @@ struct Asked<'a> {
     best: Best,
     /// Where its trajectory and its pose lie among the boxes of the leaves.
     among: (Place<TRAJECTORY_PAIRS>, Place<POSE_PAIRS>),
+    /// Whether its trajectory lies beyond.
+    far: bool,
+    beyond: Beyond<TRAJECTORY_PAIRS>,
     trajectory: [f32; TRAJECTORY],
     /// Its nearest regions.
     near: Near,
@@ -70,11 +73,14 @@ pub fn nearest(index: &Index, frames: &[u32], queries: &[[f32; PADDED]], found: 
     let poses = index.poses.gather(frames);
     let asked = |(at, query)| {
         let trajectory = index.axes.turn(query);
+        let beyond = index.tree.grid.beyond(&trajectory);
         Asked {
             query: *query,
             slack: SLACK * (index.longest + length(query)),
             best: Best::NONE,
             among: (index.tree.grid.place(&trajectory), index.poses.place(query)),
+            far: beyond.square > 0.0,
+            beyond,
             trajectory,
             near: Near::NONE,
             poses: poses.row(at),
@@ -173,10 +179,12 @@ fn to_groups(index: &Index, region: usize, asked: &Asked) -> [f32; LANES] {
 #[inline(always)]
 fn to_leaves(index: &Index, group: usize, asked: &Asked, codes: [u8; LANES]) -> [f32; LANES] {
     let (trajectory, pose) = &asked.among;
-    let mut bounds = index
-        .tree
-        .grid
-        .outside(&index.tree.inner[group], trajectory);
+    let (grid, boxes) = (&index.tree.grid, &index.tree.inner[group]);
+    // Apart, for almost all are near, and that is less to do.
+    let mut bounds = match asked.far {
+        true => grid.outside(boxes, trajectory, &asked.beyond),
+        false => grid.outside(boxes, trajectory, &Beyond::NOTHING),
+    };
     for (bound, known) in bounds.iter_mut().zip(index.poses.squares(codes)) {
         *bound += known;
     }

@@ -5,7 +5,7 @@
 //! pose of the one to any pose of the other, rounded down to a byte. Where memory is too short for a
 //! byte for every leaf, boxes around the leaves' poses take their place.
 
-use super::grid::{Grid, POSE_PAIRS, Place, Rounded};
+use super::grid::{Beyond, Grid, POSE_PAIRS, Place, Rounded};
 use super::tree::{self, LANES, Lanes, Tree};
 use crate::motion::database::PADDED;
 use crate::motion::features::POSE;
@@ -162,7 +162,7 @@ impl Poses {
         let Some(boxes) = self.boxes.get(group) else {
             return;
         };
-        let outside = self.grid.outside(boxes, place);
+        let outside = self.grid.outside(boxes, place, &Beyond::NOTHING);
         for ((bound, known), outside) in bounds.iter_mut().zip(self.squares(codes)).zip(outside) {
             let more = outside - known;
             *bound += if more > 0.0 { more } else { 0.0 };
