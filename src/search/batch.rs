@@ -27,11 +27,9 @@ struct Asked<'a> {
     among: (Place<TRAJECTORY_PAIRS>, Place<POSE_PAIRS>),
     /// Whether its trajectory lies beyond.
     far: bool,
-    beyond: Beyond<TRAJECTORY_PAIRS>,
     trajectory: [f32; TRAJECTORY],
-    /// Its nearest regions.
-    near: Near,
     poses: Row<'a>,
+    beyond: Beyond<TRAJECTORY_PAIRS>,
 }
 
 const RELATIVE: f32 = 1.0 + 1e-5;
@@ -80,15 +78,16 @@ pub fn nearest(index: &Index, frames: &[u32], queries: &[[f32; PADDED]], found: 
             best: Best::NONE,
             among: (index.tree.grid.place(&trajectory), index.poses.place(query)),
             far: beyond.square > 0.0,
-            beyond,
             trajectory,
-            near: Near::NONE,
             poses: poses.row(at),
+            beyond,
         }
     };
     let mut asked: Vec<Asked> = queries.iter().enumerate().map(asked).collect();
-    let bounds = to_regions(index, &mut asked);
-    asked.iter_mut().for_each(|asked| seed(index, asked));
+    let (bounds, near) = to_regions(index, &asked);
+    for (asked, near) in asked.iter_mut().zip(near) {
+        seed(index, near, asked);
+    }
     let regions = bounds.chunks_exact(asked.len());
     let regions = regions.take(index.tree.outer.len()).enumerate();
     if let [asked] = &mut asked[..] {
@@ -108,30 +107,31 @@ pub fn nearest(index: &Index, frames: &[u32], queries: &[[f32; PADDED]], found: 
     }
 }
 
-/// Squared distances to all regions at least, `[regions][queries]`; the nearest ones are left in `near`.
+/// Squared distances to all regions at least, `[regions][queries]`, and the nearest regions of each query.
 #[inline(always)]
-fn to_regions(index: &Index, asked: &mut [Asked]) -> Vec<f32> {
+fn to_regions(index: &Index, asked: &[Asked]) -> (Vec<f32>, Vec<Near>) {
     let count = asked.len();
+    let mut near = vec![Near::NONE; count];
     let mut all = vec![0.0; index.tree.regions.len() * LANES * count];
     for (at, boxes) in index.tree.regions.iter().enumerate() {
         let all = &mut all[at * LANES * count..][..LANES * count];
-        for (i, asked) in asked.iter_mut().enumerate() {
+        for (i, (asked, near)) in asked.iter().zip(&mut near).enumerate() {
             let known = index.poses.squares(asked.poses.to_regions(at));
             let bounds = outside(boxes, &asked.trajectory, known);
-            asked.near.offer(&bounds, at * LANES);
+            near.offer(&bounds, at * LANES);
             for (of_region, bound) in all.chunks_exact_mut(count).zip(bounds) {
                 of_region[i] = bound;
             }
         }
     }
-    all
+    (all, near)
 }
 
 /// A first answer: of the nearest leaf of each of the nearest groups of the nearest regions.
 #[inline(always)]
-fn seed(index: &Index, asked: &mut Asked) {
+fn seed(index: &Index, regions: Near, asked: &mut Asked) {
     let mut near = Near::NONE;
-    for region in asked.near.below(index.tree.outer.len()) {
+    for region in regions.below(index.tree.outer.len()) {
         near.offer(&to_groups(index, region, asked), region * LANES);
     }
     for group in near.below(index.tree.inner.len()) {
