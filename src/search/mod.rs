@@ -3,7 +3,7 @@
 //!
 //! The bound of a leaf is the least distance of its poses to the query's, which is known
 //! beforehand ([`poses`]), and the distance of the query's trajectory to the box around the leaf's
-//! along the principal axes ([`axes`], [`tree`]). Bounds are widened by more than rounding can do,
+//! along the principal axes ([`axes`], [`tree`], [`grid`]). Bounds are widened by more than rounding can do,
 //! and distances are those of [`crate::kernels::search_exact::squared`]: the answer is, bit for
 //! bit, that of [`crate::kernels::search_exact::twin`], the lowest index of equals included.
 
