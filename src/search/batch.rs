@@ -25,7 +25,7 @@ struct Asked<'a> {
     best: Best,
     /// Where its trajectory and its pose lie among the boxes of the leaves.
     among: (Place<TRAJECTORY_PAIRS>, Place<POSE_PAIRS>),
-    /// Whether its trajectory lies beyond.
+    /// Whether there is something `beyond`, which few have: so those that do not need not fetch that.
     far: bool,
     trajectory: [f32; TRAJECTORY],
     poses: Row<'a>,
@@ -76,7 +76,10 @@ pub fn nearest(index: &Index, frames: &[u32], queries: &[[f32; PADDED]], found: 
             query: *query,
             slack: SLACK * (index.longest + length(query)),
             best: Best::NONE,
-            among: (index.tree.grid.place(&trajectory), index.poses.place(query)),
+            among: (
+                index.tree.grid.place(&trajectory),
+                index.poses.grid.place(query),
+            ),
             far: beyond.square > 0.0,
             trajectory,
             poses: poses.row(at),

@@ -86,7 +86,8 @@ impl<const D: usize, const P: usize> Grid<D, P> {
         beyond
     }
 
-    /// Boxes are wider by a number on each side: more than what is looked for can be off.
+    /// Boxes are wider by a number on each side: more than what is looked for can be off. Where there is
+    /// no box (infinity), there are no rows, and its distance does not matter.
     pub fn widen(&self, low: &[[f32; LANES]; D], high: &[[f32; LANES]; D]) -> Rounded<P> {
         Rounded {
             low: self.corners(low, -1.0),

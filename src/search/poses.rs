@@ -21,7 +21,8 @@ pub struct Poses {
     pub by_group: Vec<u8>,
     /// `[blocks][groups][LANES]`; empty where memory was short.
     pub by_leaf: Vec<[u8; LANES]>,
-    grid: Grid<POSE, POSE_PAIRS>,
+    /// Of the boxes; every pose of the database lies on it.
+    pub grid: Grid<POSE, POSE_PAIRS>,
     /// Around the leaves' poses, `[groups]`; only where memory was short.
     boxes: Vec<Rounded<POSE_PAIRS>>,
 }
@@ -141,12 +142,6 @@ impl Poses {
             + size_of_val(&self.by_leaf[..])
             + size_of_val(&self.block_of[..])
             + size_of_val(&self.boxes[..])
-    }
-
-    /// Where the pose of a query, a row of the database, lies among the boxes.
-    #[inline(always)]
-    pub fn place(&self, query: &[f32; PADDED]) -> Place<POSE_PAIRS> {
-        self.grid.place(query)
     }
 
     /// Raises bounds of a group's leaves that begin with these `codes` by what the boxes around the leaves'
