@@ -4,10 +4,10 @@
 use burn::tensor::{Device as Tensors, Tensor};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use footwork::gpu::Device;
-use footwork::motion::features::TRAJECTORY;
-use footwork::ppo::rollout::Rollout;
-use footwork::ppo::update::Learner;
-use footwork::tensors::read;
+use footwork::motion::features::TRAJECTORY_DIM;
+use footwork::rl::rollout::Rollout;
+use footwork::rl::ppo::update::Learner;
+use footwork::nn::tensors::read;
 use footwork::train::config::{Config, Kind, Preset};
 
 /// Samples of an answer and of a gradient step.
@@ -62,13 +62,13 @@ fn rollout(width: usize, device: &Tensors) -> Rollout {
     let scalar = || row(1).squeeze_dim::<1>(1);
     Rollout {
         observation: row(width),
-        action: row(TRAJECTORY),
-        mean: row(TRAJECTORY).mul_scalar(0.9),
+        action: row(TRAJECTORY_DIM),
+        mean: row(TRAJECTORY_DIM).mul_scalar(0.9),
         log_prob: scalar().sub_scalar(12.0),
         value: scalar(),
         advantage: scalar(),
         target: scalar(),
-        log_std: Tensor::zeros([TRAJECTORY], device),
+        log_std: Tensor::zeros([TRAJECTORY_DIM], device),
         act_s: 0.0,
         simulate_s: 0.0,
     }

@@ -2,11 +2,11 @@
 //! launch of lavapipe's. `FOOTWORK_WORLDS` sets the number of worlds (256).
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use footwork::body::physics::{SUBSTEPS, Settings};
-use footwork::body::scenes;
+use footwork::physics::simulator::{SUBSTEPS, Settings};
+use footwork::physics::scenes;
 use footwork::gpu::{Device, Gpu};
-use footwork::simulation::gpu::GpuSimulation;
-use footwork::simulation::{Setup, Simulation};
+use footwork::env::humanoid::gpu::GpuSimulation;
+use footwork::env::humanoid::{Setup, Simulation};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -42,10 +42,10 @@ fn step(simulation: &GpuSimulation, timed: &str) -> Duration {
             continue;
         }
         wait();
-        let begun = Instant::now();
+        let just_reset = Instant::now();
         launch(simulation, true);
         wait();
-        taken = begun.elapsed();
+        taken = just_reset.elapsed();
     }
     taken
 }

@@ -6,17 +6,17 @@
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use footwork::kernels::rng::{gaussian, index_below, random4};
-use footwork::kernels::search_exact;
-use footwork::motion::database::{Database, PADDED};
-use footwork::motion::features::{FEATURE, POSE};
+use footwork::kernels::search::search_exact;
+use footwork::motion::database::{Database, ROW_STRIDE};
+use footwork::motion::features::{FEATURE_DIM, POSE_DIM};
 use footwork::motion::normalise::Weights;
-use footwork::search::{Index, MEMORY};
+use footwork::matching::{Index, MEMORY};
 use footwork::train::data;
 use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Instant;
 
-fn queries(database: &Database, noise: f32, count: u32) -> (Vec<u32>, Vec<[f32; PADDED]>) {
+fn queries(database: &Database, noise: f32, count: u32) -> (Vec<u32>, Vec<[f32; ROW_STRIDE]>) {
     let candidates = &database.candidates;
     let pick = |i, stream| {
         let bits = random4(1, i, 0, stream)[0];
@@ -25,8 +25,8 @@ fn queries(database: &Database, noise: f32, count: u32) -> (Vec<u32>, Vec<[f32; 
     let query = |i| {
         let (pose, future) = (pick(i, 0), pick(i, 1));
         let query = std::array::from_fn(|d| match d {
-            0..POSE => database.features[pose as usize][d],
-            POSE..FEATURE => {
+            0..POSE_DIM => database.features[pose as usize][d],
+            POSE_DIM..FEATURE_DIM => {
                 database.features[future as usize][d] + noise * gaussian(random4(2, i, d as u32, 0))
             }
             _ => 1.0,

@@ -4,12 +4,12 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use footwork::gpu::{Device, Gpu};
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
-use footwork::motion::performer;
+use footwork::motion::synthetic;
 use footwork::playback::player::Style;
-use footwork::view::marks::scene;
-use footwork::view::rollout::{Rollout, Stage};
+use footwork::view::debug_draw::scene;
+use footwork::view::playthrough::{Rollout, Stage};
 use footwork::view::{Camera, Canvas, Crowd, Renderer, Scene};
-use footwork::world::{self, LEVELS, Obstacles, Plane, Setup, Task};
+use footwork::env::locomotion::{self, LEVELS, Obstacles, Plane, Setup, Task};
 use std::hint::black_box;
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ impl Studio {
 
 fn pictures(criterion: &mut Criterion) {
     let gpu = Gpu::drawing().expect("a GPU or lavapipe");
-    let (clips, roles) = performer::perform(1, 4.0);
+    let (clips, roles) = synthetic::perform(1, 4.0);
     let database = Database::build(&clips, roles, Weights::PAPER).expect("long enough");
     let database = Arc::new(database);
     let renderer = Renderer::new(&gpu);
@@ -61,7 +61,7 @@ fn pictures(criterion: &mut Criterion) {
             seed: 1,
             level: LEVELS - 1,
         };
-        let mut world = world::open(&Device::from(gpu.clone()), &database, &setup);
+        let mut world = locomotion::open(&Device::from(gpu.clone()), &database, &setup);
         let watched = world.watch().expect("a device");
         let crowd = Crowd::new(&studio.renderer, &database, watched, &task, envs);
         studio.camera.distance = 8.0 + 0.6 * crowd.side;

@@ -7,10 +7,10 @@
 use burn::tensor::Tensor;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use footwork::gpu::{Choice, Device};
-use footwork::motion::features::TRAJECTORY;
+use footwork::motion::features::TRAJECTORY_DIM;
 use footwork::motion::normalise::Weights;
 use footwork::train::data;
-use footwork::world::{self, LEVELS, Obstacles, Plane, Setup, Task};
+use footwork::env::locomotion::{self, LEVELS, Obstacles, Plane, Setup, Task};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -40,10 +40,10 @@ fn world(criterion: &mut Criterion) {
                 seed: 1,
                 level: LEVELS - 1,
             };
-            let mut world = world::open(&device, &database, &setup);
+            let mut world = locomotion::open(&device, &database, &setup);
             let tensors = device.tensors();
-            let mean = Tensor::<2>::zeros([envs, TRAJECTORY], &tensors);
-            let log_std = Tensor::<1>::zeros([TRAJECTORY], &tensors);
+            let mean = Tensor::<2>::zeros([envs, TRAJECTORY_DIM], &tensors);
+            let log_std = Tensor::<1>::zeros([TRAJECTORY_DIM], &tensors);
             group.throughput(Throughput::Elements(envs as u64 * 16));
             group.bench_function(
                 format!("{}, {choice:?}, {envs} environments", task.name()),

@@ -16,35 +16,34 @@
 //!
 //! # The modules, from the ground up
 //!
-//! - [`motion`]: recordings, the procedural performer, features, the database;
+//! - [`motion`]: recordings, the synthetic performer, features, the database;
 //! - [`gpu`]: devices, buffers, the one launch, the one bridge to burn's tensors;
-//! - [`kernels`]: one file a shader: parameters, launch, twin;
-//! - [`search`]: the exact search's index, and the search on the CPU;
-//! - [`world`]: a batch of worlds, by shaders or by twins;
-//! - [`body`]: articulated rigid bodies with contact: models, and the physics of one world;
-//! - [`simulation`]: a batch of physical worlds, by shaders or by their twins' functions;
-//! - [`playback`]: the whole body of a walk: stitching, foot locking, and how good it looks;
-//! - [`ppo`]: policy, rollout, update;
-//! - [`train`]: configuration, run folder, checkpoints, the loop, evaluation;
-//! - [`view`]: scenes, and the renderer that draws them on the GPU or on lavapipe;
-//! - [`play`]: the window: a controller at work, and why it does what it does;
-//! - [`benchmark`]: what each device makes of each stage;
+//! - [`kernels`]: one file per shader: parameters, launch, twin;
+//! - [`matching`]: motion matching: the exact search, its index, on the CPU and on the GPU;
+//! - [`physics`]: articulated rigid bodies with contact;
+//! - [`nn`]: networks, their evaluation and their gradients;
+//! - [`env`]: batches of environments, by shaders or by their twins;
+//! - [`rl`]: rollouts, advantages, PPO;
+//! - [`train`]: configuration, run directory, checkpoints, the loop, evaluation;
+//! - [`playback`]: the whole body of an episode: stitching, foot locking, motion quality;
+//! - [`view`]: scenes, and the renderer that draws them;
+//! - [`viewer`]: the interactive windows;
+//! - [`bench`]: what each device makes of each stage;
 //! - [`report`]: pictures, TensorBoard events, tables;
-//! - [`store`] and [`tensors`]: files and tensors as plain arrays.
+//! - [`container`]: the file format of databases and checkpoints.
 
-pub mod benchmark;
-pub mod body;
+pub mod bench;
+pub mod container;
+pub mod env;
 pub mod gpu;
 pub mod kernels;
+pub mod matching;
 pub mod motion;
-pub mod play;
+pub mod nn;
+pub mod physics;
 pub mod playback;
-pub mod ppo;
 pub mod report;
-pub mod search;
-pub mod simulation;
-pub mod store;
-pub mod tensors;
+pub mod rl;
 pub mod train;
 pub mod view;
-pub mod world;
+pub mod viewer;

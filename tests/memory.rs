@@ -4,12 +4,12 @@
 use footwork::gpu::{Choice, Device};
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
-use footwork::motion::performer;
-use footwork::ppo::rollout;
-use footwork::ppo::update::Learner;
-use footwork::tensors;
+use footwork::motion::synthetic;
+use footwork::rl::rollout;
+use footwork::rl::ppo::update::Learner;
+use footwork::nn::tensors;
 use footwork::train::config::{Config, Kind, Preset};
-use footwork::world::{Batch, Setup};
+use footwork::env::locomotion::{Batch, Setup};
 use std::sync::Arc;
 
 /// Bytes that the driver has given, and in how many pieces.
@@ -25,7 +25,7 @@ fn given(device: &Device) -> (u64, usize) {
 #[test]
 fn updates_allocate_nothing_on_the_device() {
     let device = Device::open(Choice::Lavapipe).expect("an adapter");
-    let (clips, roles) = performer::perform(1, 1.0);
+    let (clips, roles) = synthetic::perform(1, 1.0);
     let database = Database::build(&clips, roles, Weights::PAPER).expect("synthetic motion");
     let database = Arc::new(database);
     for kind in [Kind::Plane, Kind::Obstacles] {

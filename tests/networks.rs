@@ -4,15 +4,15 @@
 
 use burn::tensor::{Device as Tensors, Tensor};
 use footwork::gpu::{Choice, Device};
-use footwork::kernels::layout::{GOAL, SENSED};
+use footwork::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, MAP_OBS_DIM};
 use footwork::kernels::rng::{gaussian, random4};
-use footwork::motion::features::TRAJECTORY;
-use footwork::ppo::Ppo;
-use footwork::ppo::layer::Convolution;
-use footwork::ppo::network::{Network, Shape};
-use footwork::ppo::rollout::Rollout;
-use footwork::ppo::update::Learner;
-use footwork::tensors::{mean, read, sum, upload, vector};
+use footwork::motion::features::TRAJECTORY_DIM;
+use footwork::rl::ppo::Ppo;
+use footwork::nn::layer::Convolution;
+use footwork::nn::network::{Network, Shape};
+use footwork::rl::rollout::Rollout;
+use footwork::rl::ppo::update::Learner;
+use footwork::nn::tensors::{mean, read, sum, upload, vector};
 use footwork::train::config::{Config, Kind, Preset};
 
 /// More than a chunk, and no whole number of pieces.
@@ -27,7 +27,7 @@ fn normal(length: usize, stream: u32) -> Vec<f32> {
 fn observations(width: usize) -> Vec<f32> {
     let mut all = normal(SAMPLES * width, 3);
     for row in all.chunks_exact_mut(width) {
-        row[GOAL..]
+        row[BASE_OBS_DIM..]
             .iter_mut()
             .for_each(|cell| *cell = f32::from(*cell > 0.0));
     }
@@ -50,8 +50,8 @@ fn rollout(width: usize, device: &Tensors) -> Rollout {
     };
     let actions = |stream| {
         upload(
-            normal(SAMPLES * TRAJECTORY, stream),
-            [SAMPLES, TRAJECTORY],
+            normal(SAMPLES * TRAJECTORY_DIM, stream),
+            [SAMPLES, TRAJECTORY_DIM],
             device,
         )
     };
@@ -64,7 +64,7 @@ fn rollout(width: usize, device: &Tensors) -> Rollout {
         value: scalars(14, 1.0, 0.0),
         advantage: scalars(15, 3.0, 1.0),
         target: scalars(16, 2.0, 0.5),
-        log_std: vector(&[-0.4; TRAJECTORY], device),
+        log_std: vector(&[-0.4; TRAJECTORY_DIM], device),
         act_s: 0.0,
         simulate_s: 0.0,
     }
@@ -123,23 +123,23 @@ fn preset(kind: Kind, preset: Preset) -> Ppo {
 
 #[test]
 fn the_plane_s_networks_agree() {
-    agree(preset(Kind::Plane, Preset::Fast), GOAL);
+    agree(preset(Kind::Plane, Preset::Fast), BASE_OBS_DIM);
 }
 
 /// With a KL penalty and a value clip.
 #[test]
 fn the_paper_s_networks_on_the_plane_agree() {
-    agree(preset(Kind::Plane, Preset::Paper), GOAL);
+    agree(preset(Kind::Plane, Preset::Paper), BASE_OBS_DIM);
 }
 
 #[test]
 fn the_networks_among_obstacles_agree() {
-    agree(preset(Kind::Obstacles, Preset::Fast), GOAL + SENSED);
+    agree(preset(Kind::Obstacles, Preset::Fast), BASE_OBS_DIM + MAP_OBS_DIM);
 }
 
 #[test]
 fn the_paper_s_networks_among_obstacles_agree() {
-    agree(preset(Kind::Obstacles, Preset::Paper), GOAL + SENSED);
+    agree(preset(Kind::Obstacles, Preset::Paper), BASE_OBS_DIM + MAP_OBS_DIM);
 }
 
 /// Widths that no block of registers fits, and all terms of the loss.
@@ -173,13 +173,13 @@ fn odd_networks_agree() {
             max_gradient: 0.5,
             ..preset(Kind::Obstacles, Preset::Fast)
         };
-        agree(ppo, GOAL + SENSED);
+        agree(ppo, BASE_OBS_DIM + MAP_OBS_DIM);
     }
 }
 
 #[test]
 fn the_same_bits_on_any_number_of_threads() {
-    for (kind, width) in [(Kind::Plane, GOAL), (Kind::Obstacles, GOAL + SENSED)] {
+    for (kind, width) in [(Kind::Plane, BASE_OBS_DIM), (Kind::Obstacles, BASE_OBS_DIM + MAP_OBS_DIM)] {
         let mut ppo = preset(kind, Preset::Fast);
         (ppo.epochs, ppo.minibatch) = (2, 40);
         let on = |threads| {
@@ -193,7 +193,7 @@ fn the_same_bits_on_any_number_of_threads() {
 
 #[test]
 fn a_sample_does_not_depend_on_its_neighbours() {
-    let (ppo, width) = (preset(Kind::Obstacles, Preset::Fast), GOAL + SENSED);
+    let (ppo, width) = (preset(Kind::Obstacles, Preset::Fast), BASE_OBS_DIM + MAP_OBS_DIM);
     let device = Tensors::flex();
     let shape = Shape::new(&ppo.network, width).expect("a network that fits");
     let policy = shape.cut(&vector(&parameters(&shape), &device));
@@ -203,7 +203,7 @@ fn a_sample_does_not_depend_on_its_neighbours() {
         read(policy.mean(upload(rows.to_vec(), [samples, width], &device))).expect("the CPU")
     };
     let one = mean(&all[33 * width..34 * width]);
-    assert_eq!(mean(&all)[33 * TRAJECTORY..34 * TRAJECTORY], one);
+    assert_eq!(mean(&all)[33 * TRAJECTORY_DIM..34 * TRAJECTORY_DIM], one);
 }
 
 /// What launches of our own would need at once, lavapipe has no buffer for.
@@ -213,8 +213,8 @@ fn networks_wider_than_a_buffer_answer_all_the_same() {
     (ppo.envs, ppo.horizon, ppo.network.hidden) = (1024, 16, vec![1100]);
     let lavapipe = Device::open(Choice::Lavapipe).expect("an adapter");
     let mean = |device: &Device| {
-        let learner = Learner::new(&ppo, GOAL, device, 1).expect("a network that fits");
-        let observation = upload(observations(GOAL), [SAMPLES, GOAL], &device.tensors());
+        let learner = Learner::new(&ppo, BASE_OBS_DIM, device, 1).expect("a network that fits");
+        let observation = upload(observations(BASE_OBS_DIM), [SAMPLES, BASE_OBS_DIM], &device.tensors());
         read(learner.policy().mean(observation)).expect("answers")
     };
     close(&mean(&lavapipe), &mean(&Device::Cpu), "mean");
@@ -233,7 +233,7 @@ fn filters_that_do_not_fit_are_refused() {
             sight: vec![],
             hidden: vec![8],
         };
-        Shape::new(&network, GOAL + SENSED).is_some()
+        Shape::new(&network, BASE_OBS_DIM + MAP_OBS_DIM).is_some()
     };
     assert!(fits(8, 1, 4));
     assert!(!fits(9, 1, 4));

@@ -1,7 +1,7 @@
 //! The synthetic performer keeps its feet on the ground, its joints in range and its variety.
 
 use footwork::motion::RATE;
-use footwork::motion::performer::{MINUTES, Take, perform, takes};
+use footwork::motion::synthetic::{MINUTES, Take, perform, takes};
 use glam::{Quat, Vec3};
 use std::sync::LazyLock;
 

@@ -2,23 +2,23 @@
 
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
-use footwork::motion::performer;
+use footwork::motion::synthetic;
 use footwork::playback::leg::legs;
 use footwork::playback::player::{Feet, Style};
 use footwork::playback::quality::compare;
 use footwork::playback::stitch::Stitching;
-use footwork::playback::two_joint::reach;
+use footwork::playback::two_bone_ik::reach;
 use footwork::playback::{Player, Pose, Shown};
 use footwork::train::controller::Scripted;
-use footwork::train::recording::shown;
-use footwork::world::{Plane, Task};
+use footwork::train::rendered_frames::shown;
+use footwork::env::locomotion::{Plane, Task};
 use glam::{Quat, Vec3};
 use rand::rngs::SmallRng;
 use rand::{RngExt, SeedableRng};
 use std::sync::{Arc, LazyLock};
 
 static DATABASE: LazyLock<Arc<Database>> = LazyLock::new(|| {
-    let (clips, roles) = performer::perform(1, 4.0);
+    let (clips, roles) = synthetic::perform(1, 4.0);
     Arc::new(Database::build(&clips, roles, Weights::PAPER).unwrap())
 });
 static FEET: LazyLock<Arc<Feet>> = LazyLock::new(|| Arc::new(Feet::of(&DATABASE)));

@@ -4,22 +4,22 @@
 use footwork::gpu::{Choice, Device};
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
-use footwork::motion::performer;
-use footwork::ppo::network::Shape;
+use footwork::motion::synthetic;
+use footwork::nn::network::Shape;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Kind, Preset};
 use footwork::train::controller::{Scripted, Trained};
 use footwork::train::evaluate::hardest;
-use footwork::train::folder::{Folder, Summary};
+use footwork::train::run_dir::{Folder, Summary};
 use footwork::train::planner::plan;
 use footwork::train::trainer::train;
-use footwork::world::{Obstacles, Plane, Task};
+use footwork::env::locomotion::{Obstacles, Plane, Task};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 fn database(minutes: f32) -> Arc<Database> {
-    let (clips, roles) = performer::perform(1, minutes);
+    let (clips, roles) = synthetic::perform(1, minutes);
     Arc::new(
         Database::build(&clips, roles, Weights::PAPER).expect("synthetic motion can be matched"),
     )

@@ -4,9 +4,9 @@
 // samples     [..][width]                    observations first
 // parameters  [parameters]
 // rows        [blocks][pitch][HALVES] of vec4   what is observed, and what the hidden layers make of it
-// answers     [rows][TRAJECTORY] of the actor, then [rows] of the critic; or of the one asked
+// answers     [rows][TRAJECTORY_DIM] of the actor, then [rows] of the critic; or of the one asked
 
-#import layout
+#import locomotion_layout
 #import network
 
 struct Params {
@@ -48,7 +48,7 @@ fn forward(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let row = group.x * BLOCK;
     if (row >= params.rows) { return; }
     let block = group.x * plan.pitch;
-    for (var column = local; column < GOAL; column += LANES) {
+    for (var column = local; column < BASE_OBS_DIM; column += LANES) {
         let at = (block + plan.places[network].below + column) * HALVES;
         rows[at] = observe(row, column);
         rows[at + 1u] = observe(row + 4u, column);
@@ -72,7 +72,7 @@ fn forward(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
                 rows[at] = bend(low);
                 rows[at + 1u] = bend(high);
             } else {
-                let first = group.z * params.rows * TRAJECTORY;
+                let first = group.z * params.rows * TRAJECTORY_DIM;
                 for (var r = 0u; r < BLOCK; r++) {
                     if (row + r >= params.rows) { break; }
                     answers[first + (row + r) * place.outputs + output] = select(high[r & 3u], low[r & 3u], r < 4u);

@@ -3,7 +3,7 @@
 // go on with the value of the last real state, the others with nothing.
 //
 // reward        [steps][envs]
-// ended         [steps][envs]
+// termination         [steps][envs]
 // value         [steps][envs]   the critic's output, normalised
 // next_value    [envs]          of the state after the last step
 // final_value   [steps][envs]   of the last real state of an episode that ended there, or [envs] if
@@ -12,7 +12,7 @@
 // advantage     [steps][envs]   in units of reward
 // target_value  [steps][envs]   in units of reward: what the critic shall learn
 
-#import layout
+#import locomotion_layout
 
 struct Params {
     envs: u32,
@@ -25,7 +25,7 @@ struct Params {
 }
 
 @group(0) @binding(0) var<storage, read> reward: array<f32>;
-@group(0) @binding(1) var<storage, read> ended: array<u32>;
+@group(0) @binding(1) var<storage, read> termination: array<u32>;
 @group(0) @binding(2) var<storage, read> value: array<f32>;
 @group(0) @binding(3) var<storage, read> next_value: array<f32>;
 @group(0) @binding(4) var<storage, read> final_value: array<f32>;
@@ -42,7 +42,7 @@ fn gae(@builtin(global_invocation_id) id: vec3u) {
     var sum = 0.0;
     for (var back = 0u; back < params.steps; back++) {
         let at = (params.steps - 1u - back) * params.envs + env;
-        let end = ended[at];
+        let end = termination[at];
         if (end != RUNNING) {
             let last = final_value[select(at, env, params.final_steps == 1u)] * scale[1] + scale[0];
             after = select(0.0, last, (params.bootstrap >> end & 1u) == 1u);

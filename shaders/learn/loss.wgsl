@@ -5,11 +5,11 @@
 // samples      [..][width]                   observation, action, mean, log probability, advantage,
 //                                            target, the critic's old value
 // parameters   [parameters]                  log_std last
-// old_log_std  [TRAJECTORY]
-// answers      [rows][TRAJECTORY] mean, then [rows] value
+// old_log_std  [TRAJECTORY_DIM]
+// answers      [rows][TRAJECTORY_DIM] mean, then [rows] value
 // slopes       [blocks][pitch][BLOCK]        their gradients, and the columns that are added up
 
-#import layout
+#import locomotion_layout
 #import network
 
 struct Params {
@@ -52,20 +52,20 @@ fn loss(@builtin(global_invocation_id) id: vec3u) {
     let above_actor = plan.places[plan.count - 3u].above;
     let above_critic = plan.places[plan.count - 2u].above;
     let judged = plan.places[plan.count - 1u].above;
-    let mean = sample * TRAJECTORY;
-    let log_std = plan.parameters - TRAJECTORY;
-    let action = (params.start + sample + 1u) * params.width - 2u * TRAJECTORY - 4u;
-    let scalar = action + 2u * TRAJECTORY;
+    let mean = sample * TRAJECTORY_DIM;
+    let log_std = plan.parameters - TRAJECTORY_DIM;
+    let action = (params.start + sample + 1u) * params.width - 2u * TRAJECTORY_DIM - 4u;
+    let scalar = action + 2u * TRAJECTORY_DIM;
 
     // The ratio of the action's densities, and the KL divergence of the old Gaussian from the new one.
     var log_ratio = -samples[scalar];
     var kl = 0.0;
     var entropy = 0.0;
-    for (var i = 0u; i < TRAJECTORY; i++) {
+    for (var i = 0u; i < TRAJECTORY_DIM; i++) {
         let log = parameters[log_std + i];
         let inverse = exp(-log);
         let noise = (samples[action + i] - answers[mean + i]) * inverse;
-        let moved = (samples[action + TRAJECTORY + i] - answers[mean + i]) * inverse;
+        let moved = (samples[action + TRAJECTORY_DIM + i] - answers[mean + i]) * inverse;
         let spread = old_log_std[i] - log;
         log_ratio -= 0.5 * noise * noise + log + HALF_LOG_TAU;
         kl += 0.5 * (moved * moved + exp(2.0 * spread) - 1.0) - spread;
@@ -77,11 +77,11 @@ fn loss(@builtin(global_invocation_id) id: vec3u) {
     // Where the clipped one is less, nothing depends on the ratio.
     let passes = ratio * advantage <= clipped * advantage;
     let pull = select(0.0, -advantage * ratio, passes);
-    for (var i = 0u; i < TRAJECTORY; i++) {
+    for (var i = 0u; i < TRAJECTORY_DIM; i++) {
         let log = parameters[log_std + i];
         let inverse = exp(-log);
         let noise = (samples[action + i] - answers[mean + i]) * inverse;
-        let moved = (samples[action + TRAJECTORY + i] - answers[mean + i]) * inverse;
+        let moved = (samples[action + TRAJECTORY_DIM + i] - answers[mean + i]) * inverse;
         let doubled = exp(2.0 * (old_log_std[i] - log));
         let by_mean = pull * noise - params.kl_coefficient * moved;
         slope(above_actor + i, by_mean * inverse * params.share);
@@ -90,7 +90,7 @@ fn loss(@builtin(global_invocation_id) id: vec3u) {
         slope(judged + i, (by_noise + by_kl - params.entropy_coefficient) * params.share);
     }
 
-    let value = answers[params.rows * TRAJECTORY + sample];
+    let value = answers[params.rows * TRAJECTORY_DIM + sample];
     let error = value - samples[scalar + 2u];
     let step = value - samples[scalar + 3u];
     let limit = params.value_clip;
@@ -99,7 +99,7 @@ fn loss(@builtin(global_invocation_id) id: vec3u) {
     let limited = limit > 0.0 && abs(step) > limit && near * near > error * error;
     slope(above_critic, select(error * params.value_coefficient * params.share, 0.0, limited));
 
-    let sums = judged + TRAJECTORY;
+    let sums = judged + TRAJECTORY_DIM;
     slope(sums, -min(ratio * advantage, clipped * advantage));
     slope(sums + 1u, 0.5 * select(error * error, near * near, limited));
     slope(sums + 2u, entropy);

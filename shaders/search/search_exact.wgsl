@@ -16,7 +16,7 @@
 // score    [blocks][count]
 // matched  [count]                       read if `first` is not 0
 
-#import layout
+#import locomotion_layout
 
 struct Params {
     count: u32,

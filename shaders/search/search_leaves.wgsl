@@ -17,7 +17,7 @@
 // reach     [words][count]                   see search_reach
 // distance, candidates  [LANES][count]       the best each lane knows; distances are squares
 
-#import layout
+#import locomotion_layout
 #import feature
 #import index
 

@@ -1,13 +1,13 @@
 // Every environment's character and its target, drawn from the worlds' own buffers: one instance a
 // bone, and one more a target.
 //
-// real    [REALS][envs]
-// whole   [WHOLES][envs]
+// state_f32    [STATE_F32_FIELDS][envs]
+// state_u32   [STATE_U32_FIELDS][envs]
 // points  [frames][points]   the bones' ends in the character frame, in shares of REACH
 // bones   [bones]
 
 #import crowd
-#import layout
+#import locomotion_layout
 #import math
 #import round
 #import solid
@@ -22,8 +22,8 @@ struct Bone {
     colour: vec4f,
 }
 
-@group(2) @binding(0) var<storage, read> real: array<f32>;
-@group(2) @binding(1) var<storage, read> whole: array<u32>;
+@group(2) @binding(0) var<storage, read> state_f32: array<f32>;
+@group(2) @binding(1) var<storage, read> state_u32: array<u32>;
 @group(2) @binding(2) var<storage, read> points: array<vec2u>;
 @group(2) @binding(3) var<storage, read> bones: array<Bone>;
 @group(2) @binding(4) var<uniform> crowd: Crowd;
@@ -33,11 +33,11 @@ const REACH = 4.0;
 const TARGET = vec3f(0.06, 0.50, 0.22);
 
 fn field(place: u32, env: u32) -> f32 {
-    return real[place * crowd.envs + env];
+    return state_f32[place * crowd.envs + env];
 }
 
 fn end(point: u32, env: u32, radius: f32) -> vec4f {
-    let frame = whole[FRAME * crowd.envs + env];
+    let frame = state_u32[FRAME * crowd.envs + env];
     let packed = points[frame * crowd.points + point];
     let xy = REACH * unpack2x16snorm(packed.x);
     let z = REACH * unpack2x16snorm(packed.y).x;

@@ -3,7 +3,7 @@
 // boxes  [envs][BOX][count]
 
 #import crowd
-#import layout
+#import locomotion_layout
 #import solid
 
 @group(2) @binding(0) var<storage, read> boxes: array<f32>;

@@ -3,7 +3,7 @@
 use super::Usage;
 use anyhow::{Context, Result};
 use clap::Args;
-use footwork::benchmark::{Plan, Row, STAGES, run};
+use footwork::bench::{Plan, Row, STAGES, run};
 use footwork::gpu::Choice;
 use footwork::report::scaling::{self, Curve, Panel};
 use footwork::report::table::table;
@@ -63,7 +63,7 @@ impl Bench {
         print!("{}", shown(&rows));
         if let Some(file) = &self.json {
             let text = serde_json::to_string_pretty(&json!({ "rows": rows }))?;
-            footwork::store::write_whole(file, text.as_bytes())
+            footwork::container::write_whole(file, text.as_bytes())
                 .with_context(|| format!("cannot write {}", file.display()))?;
         }
         let panels = panels(&rows);

@@ -3,10 +3,10 @@
 use super::Usage;
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand, ValueEnum};
-use footwork::motion::database::{Database, TAIL};
+use footwork::motion::database::{Database, MIN_FUTURE_FRAMES};
 use footwork::motion::import::ImportOptions;
 use footwork::motion::normalise::Weights;
-use footwork::motion::{RATE, bvh, performer};
+use footwork::motion::{RATE, bvh, synthetic};
 use footwork::report::coverage::{self, Samples};
 use footwork::report::table::table;
 use footwork::train::data;
@@ -66,7 +66,7 @@ pub struct Synth {
     /// The database file to write
     #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
-    #[arg(long, default_value_t = performer::MINUTES, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = synthetic::MINUTES, allow_negative_numbers = true)]
     minutes: f32,
     #[arg(long, default_value_t = data::SYNTHETIC_SEED, allow_negative_numbers = true)]
     seed: u64,
@@ -119,7 +119,7 @@ impl Synth {
         if !(self.minutes >= 0.1 && self.minutes <= 1000.0) {
             return Err(Usage("--minutes must be from 0.1 to 1000".into()).into());
         }
-        let (clips, roles) = performer::perform(self.seed, self.minutes);
+        let (clips, roles) = synthetic::perform(self.seed, self.minutes);
         save(
             &Database::build(&clips, roles, self.weights.into())?,
             &self.out,
@@ -207,7 +207,7 @@ fn clips(database: &Database) -> String {
             vec![
                 clip.name.clone(),
                 format!("{seconds:.1}"),
-                (clip.frames - TAIL).to_string(),
+                (clip.frames - MIN_FUTURE_FRAMES).to_string(),
                 format!("{:.2}", walked / seconds),
                 clip.licence.clone(),
             ]

@@ -11,8 +11,8 @@ use footwork::train::checkpoint::Checkpoint;
 use footwork::train::controller::{Controller, Scripted, Trained};
 use footwork::train::evaluate::{Report, evaluate, hardest};
 use footwork::train::planner::{Planned, plan};
-use footwork::train::recording::shown;
-use footwork::world::{LEVELS, Task};
+use footwork::train::rendered_frames::shown;
+use footwork::env::locomotion::{LEVELS, Task};
 use std::path::PathBuf;
 use std::sync::Arc;
 

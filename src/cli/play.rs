@@ -5,14 +5,14 @@ use anyhow::Result;
 use clap::Args;
 use footwork::gpu::Gpu;
 use footwork::motion::normalise::Weights;
-use footwork::play::viewer::Choice;
-use footwork::play::window;
+use footwork::viewer::app::Choice;
+use footwork::viewer::window;
 use footwork::playback::player::Style;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::controller::Trained;
 use footwork::train::data;
-use footwork::view::rollout::Stage;
-use footwork::world::{Plane, Task};
+use footwork::view::playthrough::Stage;
+use footwork::env::locomotion::{Plane, Task};
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -8,9 +8,9 @@ use footwork::gpu::Gpu;
 use footwork::playback::player::Style;
 use footwork::playback::stitch::Stitching;
 use footwork::train::controller::Trained;
-use footwork::view::film::{self, Output};
-use footwork::view::marks::scene;
-use footwork::view::rollout::{Rollout, Stage};
+use footwork::view::image_files::{self, Output};
+use footwork::view::debug_draw::scene;
+use footwork::view::playthrough::{Rollout, Stage};
 use footwork::view::{Camera, Canvas, Renderer};
 use indicatif::ProgressIterator;
 use std::path::PathBuf;
@@ -152,21 +152,21 @@ impl Render {
         let count = ((self.seconds * self.rate as f32).round() as usize).max(1);
         let between = (RATE / self.rate) as usize;
         match &output {
-            Output::Png(path) => film::png(path, self.size, &film.picture()?)?,
+            Output::Png(path) => image_files::png(path, self.size, &film.picture()?)?,
             Output::Gif(path) => {
                 let mut frames = Vec::with_capacity(count);
                 for _ in (0..count).progress() {
                     frames.push(film.picture()?);
                     film.skip(between)?;
                 }
-                film::gif(path, self.size, self.rate, &frames)?;
+                image_files::gif(path, self.size, self.rate, &frames)?;
             }
             Output::Folder(path) => {
                 std::fs::create_dir_all(path)
                     .with_context(|| format!("cannot make the folder {}", path.display()))?;
-                film::clear(path)?;
+                image_files::clear(path)?;
                 for number in (0..count).progress() {
-                    film::png(&film::frame(path, number), self.size, &film.picture()?)?;
+                    image_files::png(&image_files::frame(path, number), self.size, &film.picture()?)?;
                     film.skip(between)?;
                 }
             }

@@ -5,7 +5,7 @@ use footwork::motion::database::Database;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::Config;
 use footwork::train::data;
-use footwork::train::folder::Folder;
+use footwork::train::run_dir::Folder;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

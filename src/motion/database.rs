@@ -1,22 +1,22 @@
 //! Everything motion matching and playback need of a set of clips, in plain arrays.
 
 use super::clip::Clip;
-use super::features::{AHEAD, FEATURE, PLAYED, POSE, extract};
-use super::frame::to_local;
+use super::features::{TRAJECTORY_OFFSETS, FEATURE_DIM, FRAMES_PER_STEP, POSE_DIM, extract};
+use super::character_frame::to_local;
 use super::normalise::{Normalisation, Weights};
 use super::roles::Roles;
 use super::skeleton::Skeleton;
-use crate::search::{Index, MEMORY};
-use crate::store::{Arrays, Format, StoreError};
+use crate::matching::{Index, MEMORY};
+use crate::container::{Arrays, Format, StoreError};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 /// Frames at a clip's end whose future is unknown: played, never matched.
-pub const TAIL: usize = AHEAD[2];
+pub const MIN_FUTURE_FRAMES: usize = TRAJECTORY_OFFSETS[2];
 /// Width of a feature row padded to whole quads of four, as shaders and SIMD read it.
-pub const PADDED: usize = 28;
+pub const ROW_STRIDE: usize = 28;
 
 /// A clip's place in the database.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,8 +49,8 @@ pub struct Database {
     pub clips: Vec<ClipRecord>,
     pub weights: Weights,
     pub normalisation: Normalisation,
-    /// Normalised features, `[frame][PADDED]`, padded with zeros.
-    pub features: Vec<[f32; PADDED]>,
+    /// Normalised features, `[frame][ROW_STRIDE]`, padded with zeros.
+    pub features: Vec<[f32; ROW_STRIDE]>,
     /// The character's smoothed path in its clip's world: x, z (m), heading x, heading z.
     pub path: Vec<[f32; 4]>,
     /// World position of the hips in the clip, m.
@@ -79,7 +79,7 @@ struct Header {
 /// No clip has a frame whose next second is known.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "nothing to match: every clip is shorter than the {TAIL} future frames of the trajectory feature; use longer clips"
+    "nothing to match: every clip is shorter than the {MIN_FUTURE_FRAMES} future frames of the trajectory feature; use longer clips"
 )]
 pub struct NothingToMatch;
 
@@ -95,7 +95,7 @@ impl Database {
     /// If no clip is longer than the 30 future frames a candidate needs.
     pub fn build(clips: &[Clip], roles: Roles, weights: Weights) -> Result<Self, NothingToMatch> {
         use rayon::prelude::*;
-        let clips: Vec<&Clip> = clips.iter().filter(|clip| clip.frames() > TAIL).collect();
+        let clips: Vec<&Clip> = clips.iter().filter(|clip| clip.frames() > MIN_FUTURE_FRAMES).collect();
         let Some(first) = clips.first() else {
             return Err(NothingToMatch);
         };
@@ -148,7 +148,7 @@ impl Database {
 
     fn join(
         header: Header,
-        features: Vec<[f32; PADDED]>,
+        features: Vec<[f32; ROW_STRIDE]>,
         path: Vec<[f32; 4]>,
         hips: Vec<Vec3>,
         rotations: Vec<Quat>,
@@ -194,7 +194,7 @@ impl Database {
     }
 
     /// Normalised, padded features of all candidates.
-    pub fn rows(&self) -> Vec<[f32; PADDED]> {
+    pub fn rows(&self) -> Vec<[f32; ROW_STRIDE]> {
         self.candidates
             .iter()
             .map(|&frame| self.features[frame as usize])
@@ -259,17 +259,17 @@ impl Database {
                 .map(Quat::to_array)
                 .collect::<Vec<_>>(),
         );
-        crate::store::save(path, FORMAT, &header, &arrays)
+        crate::container::save(path, FORMAT, &header, &arrays)
     }
 
     /// Reads a file written by [`Database::save`].
     pub fn load(path: &Path) -> Result<Self, StoreError> {
-        let (header, mut arrays) = crate::store::load::<Header>(path, FORMAT)?;
+        let (header, mut arrays) = crate::container::load::<Header>(path, FORMAT)?;
         let damaged = |why: &str| StoreError::Damaged {
             path: path.to_path_buf(),
             why: why.to_string(),
         };
-        let features: Vec<[f32; PADDED]> = arrays
+        let features: Vec<[f32; ROW_STRIDE]> = arrays
             .take("features")
             .ok_or_else(|| damaged("no features"))?;
         let ground: Vec<[f32; 4]> = arrays.take("path").ok_or_else(|| damaged("no path"))?;
@@ -280,7 +280,7 @@ impl Database {
         let (frames, joints) = (header.frames, header.skeleton.joints());
         let mut end = 0;
         let consecutive = header.clips.iter().all(|clip| {
-            let fits = clip.first == end && clip.frames > TAIL;
+            let fits = clip.first == end && clip.frames > MIN_FUTURE_FRAMES;
             end = clip.first.saturating_add(clip.frames);
             fits
         });
@@ -329,22 +329,22 @@ fn index_beside(path: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-fn pad(row: &[f32; FEATURE]) -> [f32; PADDED] {
-    std::array::from_fn(|i| if i < FEATURE { row[i] } else { 0.0 })
+fn pad(row: &[f32; FEATURE_DIM]) -> [f32; ROW_STRIDE] {
+    std::array::from_fn(|i| if i < FEATURE_DIM { row[i] } else { 0.0 })
 }
 
 fn candidates(clips: &[ClipRecord]) -> Vec<u32> {
     clips
         .iter()
-        .flat_map(|clip| clip.first as u32..(clip.first + clip.frames - TAIL) as u32)
+        .flat_map(|clip| clip.first as u32..(clip.first + clip.frames - MIN_FUTURE_FRAMES) as u32)
         .collect()
 }
 
 fn root_motion(path: &[[f32; 4]], frame: usize) -> RootMotion {
     let [x, z, hx, hz] = path[frame];
-    let [x6, z6, hx6, hz6] = path[frame + PLAYED];
+    let [x6, z6, hx6, hz6] = path[frame + FRAMES_PER_STEP];
     let heading = [hx, hz];
-    let length = path[frame..=frame + PLAYED]
+    let length = path[frame..=frame + FRAMES_PER_STEP]
         .windows(2)
         .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]))
         .sum();
@@ -355,4 +355,4 @@ fn root_motion(path: &[[f32; 4]], frame: usize) -> RootMotion {
     }
 }
 
-const _: () = assert!(PADDED >= FEATURE && PADDED.is_multiple_of(4) && POSE < FEATURE);
+const _: () = assert!(ROW_STRIDE >= FEATURE_DIM && ROW_STRIDE.is_multiple_of(4) && POSE_DIM < FEATURE_DIM);

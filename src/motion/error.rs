@@ -1,6 +1,6 @@
 //! What can go wrong between a file and a motion.
 
-use crate::store::StoreError;
+use crate::container::StoreError;
 use std::path::{Path, PathBuf};
 
 pub type Result<T> = std::result::Result<T, Error>;

@@ -1,23 +1,23 @@
 //! What motion matching compares: 15 numbers of pose and 12 of future trajectory a frame.
 
 use super::clip::Clip;
-use super::frame::to_local;
+use super::character_frame::to_local;
 use super::roles::Roles;
 use super::smooth::savitzky_golay;
 use glam::Vec3;
 
 /// Width of the pose feature c: left foot position, right foot position, left foot velocity,
 /// right foot velocity, root velocity, 3 each, in the character frame (m, m/s).
-pub const POSE: usize = 15;
+pub const POSE_DIM: usize = 15;
 /// Width of the trajectory feature t: for +10, +20 and +30 frames the root's ground position (2)
 /// and heading (2), in the character frame.
-pub const TRAJECTORY: usize = 12;
+pub const TRAJECTORY_DIM: usize = 12;
 /// Width of a feature row, c then t (paper, section 3).
-pub const FEATURE: usize = POSE + TRAJECTORY;
+pub const FEATURE_DIM: usize = POSE_DIM + TRAJECTORY_DIM;
 /// The frames ahead that t looks at.
-pub const AHEAD: [usize; 3] = [10, 20, 30];
+pub const TRAJECTORY_OFFSETS: [usize; 3] = [10, 20, 30];
 /// Frames played between two matches: one step of the policy, 0.2 s.
-pub const PLAYED: usize = 6;
+pub const FRAMES_PER_STEP: usize = 6;
 
 /// The character's path on the ground and the features of every frame of a clip.
 pub struct Track {
@@ -27,7 +27,7 @@ pub struct Track {
     pub heading: Vec<[f32; 2]>,
     /// In metres and m/s. In the last 30 frames the trajectory repeats the last frame: these
     /// frames are played but never matched.
-    pub features: Vec<[f32; FEATURE]>,
+    pub features: Vec<[f32; FEATURE_DIM]>,
 }
 
 /// Joint positions of one frame that features and the character frame need.
@@ -60,16 +60,16 @@ pub fn extract(clip: &Clip, roles: &Roles) -> Track {
     let (ground, heading) = path(&points);
     let features = (0..points.len())
         .map(|frame| {
-            let mut row = [0.0; FEATURE];
+            let mut row = [0.0; FEATURE_DIM];
             pose(
                 &points,
                 &ground,
                 &heading,
                 frame,
                 clip.rate,
-                &mut row[..POSE],
+                &mut row[..POSE_DIM],
             );
-            trajectory(&ground, &heading, frame, &mut row[POSE..]);
+            trajectory(&ground, &heading, frame, &mut row[POSE_DIM..]);
             row
         })
         .collect();
@@ -134,7 +134,7 @@ fn pose(
 }
 
 fn trajectory(ground: &[[f32; 2]], heading: &[[f32; 2]], frame: usize, out: &mut [f32]) {
-    for (part, ahead) in out.chunks_exact_mut(4).zip(AHEAD) {
+    for (part, ahead) in out.chunks_exact_mut(4).zip(TRAJECTORY_OFFSETS) {
         let then = (frame + ahead).min(ground.len() - 1);
         let moved = [
             ground[then][0] - ground[frame][0],

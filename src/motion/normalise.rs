@@ -1,6 +1,6 @@
 //! One mean a dimension, one deviation a group, one weight a group.
 
-use super::features::{FEATURE, POSE};
+use super::features::{FEATURE_DIM, POSE_DIM};
 use serde::{Deserialize, Serialize};
 
 /// Importance of each group of features in the search.
@@ -45,28 +45,28 @@ impl Weights {
 /// `normalised = (feature - mean) * scale`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Normalisation {
-    pub mean: [f32; FEATURE],
-    pub scale: [f32; FEATURE],
+    pub mean: [f32; FEATURE_DIM],
+    pub scale: [f32; FEATURE_DIM],
 }
 
 /// Each foot position, each foot velocity, root velocity, trajectory positions, directions.
 const GROUPS: usize = 7;
 
 fn group(dimension: usize) -> usize {
-    if dimension < POSE {
+    if dimension < POSE_DIM {
         dimension / 3
     } else {
-        5 + (dimension - POSE) % 4 / 2
+        5 + (dimension - POSE_DIM) % 4 / 2
     }
 }
 
 impl Normalisation {
     /// From the rows that can be matched. A group that never varies is left unscaled.
-    pub fn of<'a>(rows: impl Iterator<Item = &'a [f32; FEATURE]>, weights: &Weights) -> Self {
-        let (mut count, mut sum, mut square) = (0.0, [0.0f64; FEATURE], [0.0f64; FEATURE]);
+    pub fn of<'a>(rows: impl Iterator<Item = &'a [f32; FEATURE_DIM]>, weights: &Weights) -> Self {
+        let (mut count, mut sum, mut square) = (0.0, [0.0f64; FEATURE_DIM], [0.0f64; FEATURE_DIM]);
         for row in rows {
             count += 1.0;
-            for i in 0..FEATURE {
+            for i in 0..FEATURE_DIM {
                 let value = f64::from(row[i]);
                 sum[i] += value;
                 square[i] += value * value;
@@ -74,7 +74,7 @@ impl Normalisation {
         }
         let mean = sum.map(|s| s / count);
         let (mut variance, mut members) = ([0.0; GROUPS], [0.0; GROUPS]);
-        for i in 0..FEATURE {
+        for i in 0..FEATURE_DIM {
             variance[group(i)] += (square[i] / count - mean[i] * mean[i]).max(0.0);
             members[group(i)] += 1.0;
         }
@@ -93,12 +93,12 @@ impl Normalisation {
         }
     }
 
-    /// Mean, then scale of the trajectory features: `[2][TRAJECTORY]`.
+    /// Mean, then scale of the trajectory features: `[2][TRAJECTORY_DIM]`.
     pub fn trajectory(&self) -> Vec<f32> {
-        [&self.mean[POSE..], &self.scale[POSE..]].concat()
+        [&self.mean[POSE_DIM..], &self.scale[POSE_DIM..]].concat()
     }
 
-    pub fn apply(&self, row: &[f32; FEATURE]) -> [f32; FEATURE] {
+    pub fn apply(&self, row: &[f32; FEATURE_DIM]) -> [f32; FEATURE_DIM] {
         std::array::from_fn(|i| (row[i] - self.mean[i]) * self.scale[i])
     }
 }
@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn dimensions_fall_into_their_groups() {
         assert_eq!(
-            (0..FEATURE).map(group).collect::<Vec<_>>(),
+            (0..FEATURE_DIM).map(group).collect::<Vec<_>>(),
             [
                 0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 5, 5, 6, 6, 5, 5, 6, 6, 5, 5, 6, 6
             ]
@@ -119,13 +119,13 @@ mod tests {
 
     #[test]
     fn the_mean_variance_of_a_group_becomes_the_squared_weight() {
-        let rows: Vec<[f32; FEATURE]> = (0..200)
+        let rows: Vec<[f32; FEATURE_DIM]> = (0..200)
             .map(|k| std::array::from_fn(|i| ((k * (i + 3)) % 17) as f32 * (i as f32 + 1.0)))
             .collect();
         let normalisation = Normalisation::of(rows.iter(), &Weights::ORANGEDUCK);
         let normal: Vec<_> = rows.iter().map(|row| normalisation.apply(row)).collect();
         for g in 0..GROUPS {
-            let members: Vec<usize> = (0..FEATURE).filter(|&i| group(i) == g).collect();
+            let members: Vec<usize> = (0..FEATURE_DIM).filter(|&i| group(i) == g).collect();
             let mut variance = 0.0;
             for &i in &members {
                 let mean = normal.iter().map(|row| row[i]).sum::<f32>() / 200.0;

@@ -1,7 +1,7 @@
 //! Foot locking: a standing foot stays where it came down.
 
 use super::contact::{Contact, Sole};
-use super::fade::Fade;
+use super::inertialize::Fade;
 use glam::Vec3;
 use std::f32::consts::PI;
 

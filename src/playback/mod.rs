@@ -2,21 +2,21 @@
 //!
 //! A rollout is a chain of [`Shown`] frames. [`Player`] turns it into poses: where the chain jumps
 //! to another frame, [`stitch`] carries the difference over and lets it fade; where a foot stands,
-//! [`foot_lock`] holds it in place by bending the leg ([`two_joint`]). (Paper, section 6: "simple
+//! [`foot_lock`] holds it in place by bending the leg ([`two_bone_ik`]). (Paper, section 6: "simple
 //! motion stitching" and "analytic two-joint inverse kinematics to prevent foot sliding".) Nothing
 //! here is ever seen by the policy.
 
 pub mod contact;
-pub mod fade;
+pub mod inertialize;
 pub mod foot_lock;
 pub mod leg;
 pub mod player;
 pub mod pose;
 pub mod quality;
-pub mod shown;
+pub mod placed_frame;
 mod spring;
 pub mod stitch;
-pub mod two_joint;
+pub mod two_bone_ik;
 
 pub use player::Player;
 pub use pose::Pose;

@@ -4,10 +4,10 @@ use super::contact::{Contact, Sole, contacts};
 use super::foot_lock::FootLock;
 use super::leg::{Leg, legs};
 use super::pose::Pose;
-use super::shown::Shown;
+use super::placed_frame::Shown;
 use super::spring::Spring;
 use super::stitch::{Stitch, Stitching};
-use super::two_joint;
+use super::two_bone_ik;
 use crate::motion::database::Database;
 use glam::Vec3;
 use std::sync::Arc;
@@ -118,14 +118,14 @@ impl Player {
             targets[side] = foot + held + Vec3::Y * sunk.max(0.0);
             if contact != Contact::Air {
                 let length = skeleton.reach(leg.hip, leg.foot);
-                let lacks = two_joint::lack(positions[leg.hip], foot, targets[side], length);
+                let lacks = two_bone_ik::lack(positions[leg.hip], foot, targets[side], length);
                 lack = lack.max(lacks.unwrap_or(0.0).min(LOWEST));
             }
         }
         let rate = if lack > self.hips.place { DOWN } else { RISE };
         pose.root.y -= self.hips.follow(lack, rate);
         for (leg, target) in self.feet.legs.iter().zip(targets) {
-            two_joint::reach(skeleton, pose, leg, target);
+            two_bone_ik::reach(skeleton, pose, leg, target);
         }
     }
 }

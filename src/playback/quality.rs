@@ -2,7 +2,7 @@
 
 use super::contact::{Contact, Sole};
 use super::player::{Feet, Player, Style};
-use super::shown::Shown;
+use super::placed_frame::Shown;
 use crate::motion::RATE;
 use crate::motion::database::Database;
 use glam::Vec3;

@@ -1,8 +1,8 @@
 //! Stitching: what keeps a jump from one frame to another from being seen.
 
-use super::fade::Fade;
+use super::inertialize::Fade;
 use super::pose::Pose;
-use super::shown::Shown;
+use super::placed_frame::Shown;
 use crate::motion::database::Database;
 use glam::{Quat, Vec3};
 

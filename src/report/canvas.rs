@@ -9,7 +9,7 @@ use std::path::Path;
 use plotters::backend::{BitMapBackend, DrawingBackend};
 use plotters::style::{Color, RGBColor, ShapeStyle};
 
-use super::{Error, font, picture};
+use super::{Error, font, png_file};
 
 /// How many times larger than the finished picture the drawing is, along each side.
 const FINE: u32 = 3;
@@ -50,7 +50,7 @@ pub fn paint(
     draw(&mut Canvas {
         backend: BitMapBackend::with_buffer(&mut rgb, size),
     })?;
-    picture::save(path, width, height, &shrink(&rgb, width, height))?;
+    png_file::save(path, width, height, &shrink(&rgb, width, height))?;
     Ok(())
 }
 

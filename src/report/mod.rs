@@ -1,6 +1,6 @@
 //! What a run leaves behind for people: pictures, TensorBoard events and tables.
 //!
-//! The pictures share one look. [`picture`] writes a PNG whole or not at all,
+//! The pictures share one look. [`png_file`] writes a PNG whole or not at all,
 //! [`canvas`] draws smooth lines and text into one, [`chart`] adds the colours and
 //! the axes, [`ground`] the view from above, and each of [`learning_curve`],
 //! [`ablation`], [`trajectories`], [`obstacle_walks`], [`coverage`] and [`scaling`] is one figure.
@@ -17,7 +17,7 @@ pub mod font;
 pub mod ground;
 pub mod learning_curve;
 pub mod obstacle_walks;
-pub mod picture;
+pub mod png_file;
 pub mod scaling;
 pub mod table;
 pub mod trajectories;

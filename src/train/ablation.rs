@@ -6,17 +6,17 @@ use super::checkpoint::Checkpoint;
 use super::config::Config;
 use super::controller::Trained;
 use super::evaluate::{Report, hardest};
-use super::folder::Folder;
-use super::milestones::point;
-use super::record::{self, Row};
+use super::run_dir::Folder;
+use super::figures::point;
+use super::metrics::{self, Row};
 use super::trainer::{EPISODES, train};
 use crate::gpu::Device;
 use crate::motion::database::Database;
 use crate::report::ablation::{self, Method};
 use crate::report::table::table;
-use crate::store::write_whole;
-use crate::world::task::Arrival;
-use crate::world::{Obstacles, Task};
+use crate::container::write_whole;
+use crate::env::locomotion::task::Arrival;
+use crate::env::locomotion::{Obstacles, Task};
 use anyhow::{Result, bail};
 use std::fmt::Write;
 use std::path::Path;
@@ -130,7 +130,7 @@ pub fn ablate(
             outcomes.push(Outcome {
                 variant: variant.name,
                 seed,
-                rows: record::read(&folder.file("metrics.jsonl"), config.steps + config.batch())?,
+                rows: metrics::read(&folder.file("metrics.jsonl"), config.steps + config.batch())?,
                 report: hardest(&policy, database, config.task, EPISODES)?,
             });
         }

@@ -2,15 +2,15 @@
 
 use super::config::Config;
 use crate::gpu::Device;
-use crate::kernels::layout::{AXES, MAP_WORDS, boxes, real, whole};
-use crate::ppo::Ppo;
-use crate::ppo::adam::Adam;
-use crate::ppo::network::{Network, Shape};
-use crate::ppo::scale::Scale;
-use crate::ppo::update::Learner;
-use crate::store::{Arrays, Format, StoreError};
-use crate::tensors::{read, vector};
-use crate::world::{Snapshot, Task};
+use crate::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, MAP_WORDS, boxes, state_f32, state_u32};
+use crate::rl::ppo::Ppo;
+use crate::nn::adam::Adam;
+use crate::nn::network::{Network, Shape};
+use crate::rl::value_normalizer::Scale;
+use crate::rl::ppo::update::Learner;
+use crate::container::{Arrays, Format, StoreError};
+use crate::nn::tensors::{read, vector};
+use crate::env::locomotion::{EnvState, Task};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -39,7 +39,7 @@ pub struct Header {
     pub rates: [f64; 2],
     pub adam_steps: u64,
     pub scale_updates: u64,
-    pub world: Snapshot,
+    pub world: EnvState,
     /// What the trainer remembers besides: see [`super::trainer`].
     pub memory: super::trainer::Memory,
 }
@@ -129,17 +129,17 @@ impl Checkpoint {
         arrays.put("first_moment", &self.first_moment);
         arrays.put("second_moment", &self.second_moment);
         arrays.put("value_moments", &self.value_moments);
-        arrays.put("real", &self.header.world.real);
-        arrays.put("whole", &self.header.world.whole);
+        arrays.put("real", &self.header.world.state_f32);
+        arrays.put("whole", &self.header.world.state_u32);
         arrays.put("boxes", &self.header.world.boxes);
-        arrays.put("drift", &self.header.world.drift);
+        arrays.put("drift", &self.header.world.obstacle_velocity);
         arrays.put("maps", &self.header.world.maps);
         arrays.put("rates", &self.header.rates);
-        crate::store::save(path, FORMAT, &self.header, &arrays)
+        crate::container::save(path, FORMAT, &self.header, &arrays)
     }
 
     pub fn load(path: &Path) -> Result<Self, StoreError> {
-        let (mut header, mut arrays) = crate::store::load::<Header>(path, FORMAT)?;
+        let (mut header, mut arrays) = crate::container::load::<Header>(path, FORMAT)?;
         let damaged = |why: &str| StoreError::Damaged {
             path: path.to_path_buf(),
             why: why.to_string(),
@@ -152,25 +152,25 @@ impl Checkpoint {
         let parameters = floats("parameters")?;
         let (first_moment, second_moment) = (floats("first_moment")?, floats("second_moment")?);
         let value_moments = floats("value_moments")?;
-        header.world.real = floats("real")?;
+        header.world.state_f32 = floats("real")?;
         header.world.boxes = floats("boxes")?;
-        header.world.drift = floats("drift")?;
-        header.world.whole = arrays.take("whole").ok_or_else(|| damaged("no whole"))?;
+        header.world.obstacle_velocity = floats("drift")?;
+        header.world.state_u32 = arrays.take("whole").ok_or_else(|| damaged("no whole"))?;
         header.world.maps = arrays.take("maps").ok_or_else(|| damaged("no maps"))?;
         let rates: Vec<f64> = arrays.take("rates").ok_or_else(|| damaged("no rates"))?;
         let shape = Shape::new(&header.network, header.observation)
             .filter(|_| header.observation == header.task.width())
             .ok_or_else(|| damaged("its network does not fit its task"))?;
         let expected = shape.parameters();
-        let envs = header.world.whole.len() / whole::FIELDS;
+        let envs = header.world.state_u32.len() / state_u32::FIELDS;
         let numbers = [
             &parameters,
             &first_moment,
             &second_moment,
             &value_moments,
-            &header.world.real,
+            &header.world.state_f32,
             &header.world.boxes,
-            &header.world.drift,
+            &header.world.obstacle_velocity,
         ];
         if !numbers
             .into_iter()
@@ -189,10 +189,10 @@ impl Checkpoint {
         let fits = envs > 0
             && [parameters.len(), first_moment.len(), second_moment.len()] == [expected; 3]
             && value_moments.len() == 2
-            && header.world.real.len() == envs * real::FIELDS
-            && header.world.whole.len() == envs * whole::FIELDS
+            && header.world.state_f32.len() == envs * state_f32::FIELDS
+            && header.world.state_u32.len() == envs * state_u32::FIELDS
             && header.world.boxes.len() == envs * boxes::FIELDS * header.task.obstacles()
-            && header.world.drift.len() == envs * AXES * header.task.obstacles()
+            && header.world.obstacle_velocity.len() == envs * VELOCITY_DIM * header.task.obstacles()
             && header.world.maps.len() == envs * MAP_WORDS;
         if !fits {
             return Err(damaged("its arrays do not fit together"));
@@ -209,7 +209,7 @@ impl Checkpoint {
 
     /// Refuses to go on under another configuration than the one the run was started with.
     pub fn check_same(&self, config: &Config) -> Result<(), CheckpointError> {
-        let (header, envs) = (&self.header, self.header.world.whole.len() / whole::FIELDS);
+        let (header, envs) = (&self.header, self.header.world.state_u32.len() / state_u32::FIELDS);
         let same = [
             ("ppo.envs", envs == config.ppo.envs),
             ("ppo.network", header.network == config.ppo.network),

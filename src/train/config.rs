@@ -2,10 +2,10 @@
 
 use crate::gpu::Choice;
 use crate::motion::normalise::Weights;
-use crate::ppo::Ppo;
-use crate::ppo::layer::Convolution;
-use crate::ppo::network::Network;
-use crate::world::{Obstacles, Plane, Task};
+use crate::rl::ppo::Ppo;
+use crate::nn::layer::Convolution;
+use crate::nn::network::Network;
+use crate::env::locomotion::{Obstacles, Plane, Task};
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
@@ -373,7 +373,7 @@ fn overlay(
 fn put(known: &mut toml::Value, value: toml::Value) -> Result<(), String> {
     match (known, value) {
         // Whole numbers stand for numbers.
-        (toml::Value::Float(known), toml::Value::Integer(whole)) => *known = whole as f64,
+        (toml::Value::Float(known), toml::Value::Integer(state_u32)) => *known = state_u32 as f64,
         (toml::Value::Integer(_), toml::Value::Integer(..0)) => {
             return Err("not be negative".to_string());
         }

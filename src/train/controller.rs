@@ -3,16 +3,16 @@
 use super::checkpoint::Checkpoint;
 use crate::motion::RATE;
 use crate::motion::database::Database;
-use crate::motion::features::{AHEAD, POSE, TRAJECTORY};
-use crate::ppo::network::Shape;
-use crate::ppo::policy::Policy;
-use crate::tensors;
+use crate::motion::features::{TRAJECTORY_OFFSETS, POSE_DIM, TRAJECTORY_DIM};
+use crate::nn::network::Shape;
+use crate::nn::policy::Policy;
+use crate::nn::tensors;
 use anyhow::Result;
 use burn::tensor::Device;
 
 /// Anything that asks for trajectories.
 pub trait Controller {
-    /// Normalised actions `[envs][TRAJECTORY]` for observations `[envs][width]`.
+    /// Normalised actions `[envs][TRAJECTORY_DIM]` for observations `[envs][width]`.
     fn act(&self, observation: &[f32], width: usize) -> Result<Vec<f32>>;
 }
 
@@ -56,13 +56,13 @@ pub struct Scripted<'a> {
 impl Controller for Scripted<'_> {
     fn act(&self, observation: &[f32], width: usize) -> Result<Vec<f32>> {
         let normal = &self.database.normalisation;
-        let mut action = Vec::with_capacity(observation.len() / width * TRAJECTORY);
+        let mut action = Vec::with_capacity(observation.len() / width * TRAJECTORY_DIM);
         for row in observation.chunks_exact(width) {
             // The goal's scale does not matter for its direction.
-            let goal = [row[POSE], row[POSE + 1]];
+            let goal = [row[POSE_DIM], row[POSE_DIM + 1]];
             let length = goal[0].hypot(goal[1]).max(1e-6);
             let direction = goal.map(|g| g / length);
-            for (k, ahead) in AHEAD.iter().enumerate() {
+            for (k, ahead) in TRAJECTORY_OFFSETS.iter().enumerate() {
                 let far = self.speed * *ahead as f32 / RATE;
                 let asked = [
                     direction[0] * far,
@@ -71,7 +71,7 @@ impl Controller for Scripted<'_> {
                     direction[1],
                 ];
                 for (i, value) in asked.into_iter().enumerate() {
-                    let at = POSE + 4 * k + i;
+                    let at = POSE_DIM + 4 * k + i;
                     action.push((value - normal.mean[at]) * normal.scale[at]);
                 }
             }

@@ -3,8 +3,8 @@
 use crate::motion::database::Database;
 use crate::motion::import::{ImportOptions, import};
 use crate::motion::normalise::Weights;
-use crate::motion::performer;
-use crate::store::StoreError;
+use crate::motion::synthetic;
+use crate::container::StoreError;
 use anyhow::{Result, bail};
 use std::path::Path;
 
@@ -15,7 +15,7 @@ pub const SYNTHETIC_SEED: u64 = 1;
 /// motion. The notes say what the user should know of an import.
 pub fn load(path: Option<&Path>, weights: Weights) -> Result<(Database, Vec<String>)> {
     let Some(path) = path else {
-        let (clips, roles) = performer::perform(SYNTHETIC_SEED, performer::MINUTES);
+        let (clips, roles) = synthetic::perform(SYNTHETIC_SEED, synthetic::MINUTES);
         let note = "no data given: synthetic motion of the built-in performer".to_string();
         return Ok((Database::build(&clips, roles, weights)?, vec![note]));
     };

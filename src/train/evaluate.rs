@@ -1,20 +1,20 @@
 //! Judges a controller on a fixed set of episodes, each run to its end.
 
 use super::controller::Controller;
-use crate::kernels::layout::{end, real};
+use crate::kernels::locomotion::locomotion_layout::{termination, state_f32};
 use crate::kernels::rng::{random4, uniform01};
 use crate::motion::RATE;
 use crate::motion::database::Database;
-use crate::motion::features::PLAYED;
-use crate::world::cpu::CpuWorld;
-use crate::world::{LEVELS, Setup, Task};
+use crate::motion::features::FRAMES_PER_STEP;
+use crate::env::locomotion::cpu::CpuLocomotion;
+use crate::env::locomotion::{LEVELS, Setup, Task};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Seed of the evaluation episodes: the same for every controller.
 const EPISODES_SEED: u32 = 0x4556_414c;
-pub const SECONDS_A_STEP: f32 = PLAYED as f32 / RATE;
+pub const SECONDS_A_STEP: f32 = FRAMES_PER_STEP as f32 / RATE;
 /// A character has turned to a new target once it nears it this fast, m/s.
 const NEARING: f32 = 0.5;
 /// Steps to wait for that.
@@ -51,7 +51,7 @@ pub struct Report {
 }
 
 /// The evaluation episodes of a task on a level.
-pub fn episodes(database: &Arc<Database>, task: Task, level: u32, episodes: usize) -> CpuWorld {
+pub fn episodes(database: &Arc<Database>, task: Task, level: u32, episodes: usize) -> CpuLocomotion {
     let setup = Setup {
         task,
         envs: episodes,
@@ -59,11 +59,11 @@ pub fn episodes(database: &Arc<Database>, task: Task, level: u32, episodes: usiz
         seed: EPISODES_SEED,
         level,
     };
-    CpuWorld::new(database.clone(), &setup, 0)
+    CpuLocomotion::new(database.clone(), &setup, 0)
 }
 
 /// One step of all worlds under a controller.
-pub fn advance(world: &mut CpuWorld, controller: &dyn Controller) -> Result<()> {
+pub fn advance(world: &mut CpuLocomotion, controller: &dyn Controller) -> Result<()> {
     let action = controller.act(&world.observation(), world.rules.task.width())?;
     world.play(&action);
     Ok(())
@@ -121,15 +121,15 @@ pub fn evaluate(
     count: usize,
 ) -> Result<Report> {
     let mut world = episodes(database, task, level, count);
-    let begun = Episode {
+    let just_reset = Episode {
         phase: Phase::Reaching,
         near: 0,
         loiters: false,
     };
-    let mut running = vec![begun; count];
+    let mut running = vec![just_reset; count];
     let mut found = Found::default();
     for step in 1..=task.max_steps() + PATIENCE {
-        let before = world.real.clone();
+        let before = world.state_f32.clone();
         advance(&mut world, controller)?;
         for (env, episode) in running.iter_mut().enumerate() {
             match episode.phase {
@@ -157,22 +157,22 @@ pub fn evaluate(
 
 impl Found {
     /// A step of a character under way to its target.
-    fn reaching(&mut self, world: &mut CpuWorld, env: usize, episode: &mut Episode, step: u32) {
+    fn reaching(&mut self, world: &mut CpuLocomotion, env: usize, episode: &mut Episode, step: u32) {
         let task = world.rules.task;
-        let near = distance(world, &world.real, env) <= LOITER_DISTANCE;
+        let near = distance(world, &world.state_f32, env) <= LOITER_DISTANCE;
         episode.near = if near { episode.near + 1 } else { 0 };
-        let ended = world.ended[env];
-        episode.loiters |= episode.near > LOITER_STEPS && ended != end::REACHED;
-        if ended == end::RUNNING {
+        let termination = world.termination[env];
+        episode.loiters |= episode.near > LOITER_STEPS && termination != termination::REACHED;
+        if termination == termination::RUNNING {
             return;
         }
         self.steps += f64::from(step);
         self.loiterers += usize::from(episode.loiters);
-        self.collisions += usize::from(ended == end::COLLIDED);
+        self.collisions += usize::from(termination == termination::COLLIDED);
         episode.phase = Phase::Done;
-        if ended == end::REACHED {
-            let path = world.field(real::TRAVELLED, env);
-            let straight = world.field(real::X, env).hypot(world.field(real::Z, env));
+        if termination == termination::REACHED {
+            let path = world.field(state_f32::TRAVELLED, env);
+            let straight = world.field(state_f32::X, env).hypot(world.field(state_f32::Z, env));
             self.times.push(f64::from(step as f32 * SECONDS_A_STEP));
             self.ratios.push(f64::from(path / straight));
             self.walked += f64::from(path);
@@ -186,13 +186,13 @@ impl Found {
     /// A step of a character whose target has moved, `waited` steps ago.
     fn turning(
         &mut self,
-        world: &CpuWorld,
+        world: &CpuLocomotion,
         before: &[f32],
         env: usize,
         episode: &mut Episode,
         waited: u32,
     ) {
-        let nearer = distance(world, before, env) - distance(world, &world.real, env);
+        let nearer = distance(world, before, env) - distance(world, &world.state_f32, env);
         if nearer / SECONDS_A_STEP >= NEARING || waited >= PATIENCE {
             self.delays.push(f64::from(waited as f32 * SECONDS_A_STEP));
             episode.phase = Phase::Done;
@@ -222,10 +222,10 @@ impl Found {
 }
 
 /// From a character to its target, m, in a state `real` of the world.
-fn distance(world: &CpuWorld, real: &[f32], env: usize) -> f32 {
-    let at = |field: usize| real[field * world.rules.envs + env];
-    let x = at(real::TARGET_X) - at(real::X);
-    x.hypot(at(real::TARGET_Z) - at(real::Z))
+fn distance(world: &CpuLocomotion, state_f32: &[f32], env: usize) -> f32 {
+    let at = |field: usize| state_f32[field * world.rules.envs + env];
+    let x = at(state_f32::TARGET_X) - at(state_f32::X);
+    x.hypot(at(state_f32::TARGET_Z) - at(state_f32::Z))
 }
 
 /// 0 of nothing, so that reports stay plain numbers.
@@ -236,10 +236,10 @@ fn mean(values: &[f64]) -> f64 {
 /// Moves one character's target to a random place of the task's square, at least 2 m (or two fifths
 /// of the square's half side) away, so that there is something to turn to. On the plane the square
 /// lies around the character; obstacles have their own, and the target stands clear of them.
-pub fn send_elsewhere(world: &mut CpuWorld, env: usize) {
+pub fn send_elsewhere(world: &mut CpuLocomotion, env: usize) {
     const STREAM: u32 = 0x5455_524e;
     let (envs, half_side) = (world.rules.envs, world.rules.task.half_side(LEVELS - 1));
-    let at = [real::X, real::Z].map(|field| world.field(field, env));
+    let at = [state_f32::X, state_f32::Z].map(|field| world.field(field, env));
     let centre = match world.rules.task {
         Task::Plane(_) => at,
         Task::Obstacles(_) => [0.0; 2],
@@ -256,6 +256,6 @@ pub fn send_elsewhere(world: &mut CpuWorld, env: usize) {
         .take(64)
         .find(|place| far(place) && !world.blocked(env, *place))
         .unwrap_or(centre.map(|c| c + half_side));
-    world.real[real::TARGET_X * envs + env] = place[0];
-    world.real[real::TARGET_Z * envs + env] = place[1];
+    world.state_f32[state_f32::TARGET_X * envs + env] = place[0];
+    world.state_f32[state_f32::TARGET_Z * envs + env] = place[1];
 }

@@ -3,13 +3,13 @@
 //! reach bounds from below what a policy might.
 
 use super::evaluate::episodes;
-use crate::kernels::layout::{end, real};
+use crate::kernels::locomotion::locomotion_layout::{termination, state_f32};
 use crate::motion::RATE;
 use crate::motion::database::Database;
-use crate::motion::features::{AHEAD, POSE, TRAJECTORY};
-use crate::motion::frame::to_local;
-use crate::world::Task;
-use crate::world::cpu::CpuWorld;
+use crate::motion::features::{TRAJECTORY_OFFSETS, POSE_DIM, TRAJECTORY_DIM};
+use crate::motion::character_frame::to_local;
+use crate::env::locomotion::Task;
+use crate::env::locomotion::cpu::CpuLocomotion;
 use serde::Serialize;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -55,7 +55,7 @@ pub fn plan(database: &Arc<Database>, task: Task, level: u32, count: usize) -> P
 }
 
 /// How many of a world's episodes can be taken to their target.
-fn explore(mut world: CpuWorld, database: &Database) -> usize {
+fn explore(mut world: CpuLocomotion, database: &Database) -> usize {
     let count = world.rules.envs;
     // Which episode each world tries.
     let mut episode: Vec<usize> = (0..count).collect();
@@ -67,7 +67,7 @@ fn explore(mut world: CpuWorld, database: &Database) -> usize {
         let actions = actions(&world, database);
         world.play(&actions);
         for (env, &episode) in episode.iter().enumerate() {
-            reached[episode] |= world.ended[env] == end::REACHED;
+            reached[episode] |= world.termination[env] == termination::REACHED;
         }
         let chosen: Vec<usize> = (0..count)
             .filter(|&one| !reached[one])
@@ -84,14 +84,14 @@ fn explore(mut world: CpuWorld, database: &Database) -> usize {
 
 /// The worlds one episode goes on from: the nearest to the target, and some of the others for ways
 /// around.
-fn choose(world: &CpuWorld, episode: &[usize], one: usize) -> Vec<usize> {
-    let at = |env: usize| [real::X, real::Z].map(|field| world.field(field, env));
+fn choose(world: &CpuLocomotion, episode: &[usize], one: usize) -> Vec<usize> {
+    let at = |env: usize| [state_f32::X, state_f32::Z].map(|field| world.field(field, env));
     let left = |env: usize| {
         let [x, z] = at(env);
-        (world.field(real::TARGET_X, env) - x).hypot(world.field(real::TARGET_Z, env) - z)
+        (world.field(state_f32::TARGET_X, env) - x).hypot(world.field(state_f32::TARGET_Z, env) - z)
     };
     let mut alive: Vec<usize> = (0..episode.len())
-        .filter(|&env| episode[env] == one && world.ended[env] == end::RUNNING)
+        .filter(|&env| episode[env] == one && world.termination[env] == termination::RUNNING)
         .collect();
     alive.sort_by(|&a, &b| left(a).total_cmp(&left(b)));
     let mut taken = HashSet::new();
@@ -104,16 +104,16 @@ fn choose(world: &CpuWorld, episode: &[usize], one: usize) -> Vec<usize> {
 }
 
 /// Normalised actions: each world its own of the [`ACTIONS`] kinds, in turn.
-fn actions(world: &CpuWorld, database: &Database) -> Vec<f32> {
+fn actions(world: &CpuLocomotion, database: &Database) -> Vec<f32> {
     let normal = &database.normalisation;
-    let mut actions = Vec::with_capacity(world.rules.envs * TRAJECTORY);
+    let mut actions = Vec::with_capacity(world.rules.envs * TRAJECTORY_DIM);
     for env in 0..world.rules.envs {
         let (direction, speed) = asked(world, env);
-        for (k, ahead) in AHEAD.iter().enumerate() {
+        for (k, ahead) in TRAJECTORY_OFFSETS.iter().enumerate() {
             let far = speed * *ahead as f32 / RATE;
             let [x, z] = direction;
             for (i, value) in [x * far, z * far, x, z].into_iter().enumerate() {
-                let at = POSE + 4 * k + i;
+                let at = POSE_DIM + 4 * k + i;
                 actions.push((value - normal.mean[at]) * normal.scale[at]);
             }
         }
@@ -122,7 +122,7 @@ fn actions(world: &CpuWorld, database: &Database) -> Vec<f32> {
 }
 
 /// Direction in the character frame and speed of a world's kind of action.
-fn asked(world: &CpuWorld, env: usize) -> ([f32; 2], f32) {
+fn asked(world: &CpuLocomotion, env: usize) -> ([f32; 2], f32) {
     let kind = env % ACTIONS;
     if kind == ACTIONS - 1 {
         return ([0.0, 1.0], 0.0);
@@ -134,10 +134,10 @@ fn asked(world: &CpuWorld, env: usize) -> ([f32; 2], f32) {
     }
     let field = |field: usize| world.field(field, env);
     let offset = [
-        field(real::TARGET_X) - field(real::X),
-        field(real::TARGET_Z) - field(real::Z),
+        field(state_f32::TARGET_X) - field(state_f32::X),
+        field(state_f32::TARGET_Z) - field(state_f32::Z),
     ];
-    let goal = to_local(offset, [field(real::HEADING_X), field(real::HEADING_Z)]);
+    let goal = to_local(offset, [field(state_f32::HEADING_X), field(state_f32::HEADING_Z)]);
     let length = goal[0].hypot(goal[1]).max(1e-6);
     (goal.map(|g| g / length), speed)
 }

@@ -1,6 +1,6 @@
 //! A live line on a terminal, a plain line now and then otherwise.
 
-use super::record::Row;
+use super::metrics::Row;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};

@@ -4,20 +4,20 @@ use super::checkpoint::{Checkpoint, Header};
 use super::config::Config;
 use super::controller::Trained;
 use super::evaluate::{Report, hardest};
-use super::folder::{Folder, Summary};
-use super::milestones;
+use super::run_dir::{Folder, Summary};
+use super::figures;
 use super::progress::Progress;
-use super::record::{self, Recorder, Row};
+use super::metrics::{self, Recorder, Row};
 use crate::gpu::Device;
-use crate::kernels::layout::whole;
-use crate::kernels::tally;
+use crate::kernels::locomotion::locomotion_layout::state_u32;
+use crate::kernels::locomotion::episode_stats;
 use crate::motion::database::Database;
-use crate::ppo::rollout::{self, Rollout};
-use crate::ppo::update::{Learner, Losses};
-use crate::tensors;
-use crate::world::curriculum::Curriculum;
-use crate::world::watched::Watched;
-use crate::world::{Batch, Setup, Tally, Task};
+use crate::rl::rollout::{self, Rollout};
+use crate::rl::ppo::update::{Learner, Losses};
+use crate::nn::tensors;
+use crate::env::curriculum::Curriculum;
+use crate::env::locomotion::live_view::LiveView;
+use crate::env::locomotion::{Batch, Setup, EpisodeStats, Task};
 use anyhow::{Context, Result, bail};
 use burn::tensor::Tensor;
 use serde::{Deserialize, Serialize};
@@ -56,7 +56,7 @@ const RECENT: f64 = 500.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
     /// Of the latest updates.
-    recent: Vec<Tally>,
+    recent: Vec<EpisodeStats>,
     /// Level, recent success and (negative) length of the best policy so far.
     best: Option<(u32, f64, f64)>,
     pub curriculum: Curriculum,
@@ -71,9 +71,9 @@ impl Memory {
         }
     }
 
-    fn remember(&mut self, tally: Tally) {
+    fn remember(&mut self, tally: EpisodeStats) {
         self.recent.push(tally);
-        let episodes = |recent: &[Tally]| recent.iter().map(|t| t.episodes).sum::<f64>();
+        let episodes = |recent: &[EpisodeStats]| recent.iter().map(|t| t.episodes).sum::<f64>();
         while self.recent.len() > 1 && episodes(&self.recent[1..]) >= RECENT {
             self.recent.remove(0);
         }
@@ -81,7 +81,7 @@ impl Memory {
 
     /// Means over the recent episodes: success, steps, return. `None` before the first ended.
     fn means(&self) -> Option<[f64; 3]> {
-        let sum = |of: fn(&Tally) -> f64| self.recent.iter().map(of).sum::<f64>();
+        let sum = |of: fn(&EpisodeStats) -> f64| self.recent.iter().map(of).sum::<f64>();
         let episodes = sum(|t| t.episodes);
         let sums = [sum(|t| t.successes), sum(|t| t.steps), sum(|t| t.returns)];
         (episodes > 0.0).then(|| sums.map(|sum| sum / episodes))
@@ -107,7 +107,7 @@ impl Memory {
 #[derive(Default)]
 pub struct Watch {
     /// Once the worlds are open; taken by who draws them.
-    pub worlds: Mutex<Option<Watched>>,
+    pub worlds: Mutex<Option<LiveView>>,
     /// The latest update.
     pub row: Mutex<Option<Row>>,
 }
@@ -191,7 +191,7 @@ impl<'a> Run<'a> {
             None => Learner::new(ppo, width, device, config.seed)?,
             Some(checkpoint) => {
                 let (envs, frames) = (ppo.envs, database.frames());
-                let shown = &checkpoint.header.world.whole[whole::FRAME * envs..][..envs];
+                let shown = &checkpoint.header.world.state_u32[state_u32::FRAME * envs..][..envs];
                 if let Some(frame) = shown.iter().find(|&&frame| frame as usize >= frames) {
                     bail!(
                         "the checkpoint shows frame {frame} of a database of {frames}: it is damaged"
@@ -204,7 +204,7 @@ impl<'a> Run<'a> {
             }
         };
         let rows = if steps > 0 {
-            record::read(&folder.file("metrics.jsonl"), steps)?
+            metrics::read(&folder.file("metrics.jsonl"), steps)?
         } else {
             Vec::new()
         };
@@ -292,8 +292,8 @@ impl<'a> Run<'a> {
             );
         }
         let losses = Losses::from(&numbers);
-        let sums: [f32; tally::SUMS] = std::array::from_fn(|i| numbers[6 + i]);
-        let tally = Tally::from(sums);
+        let sums: [f32; episode_stats::SUMS] = std::array::from_fn(|i| numbers[6 + i]);
+        let tally = EpisodeStats::from(sums);
         self.memory.remember(tally);
         let row = self.row(losses, tally, &rollout, start.elapsed().as_secs_f64());
         if let Task::Obstacles(task) = &self.config.task
@@ -305,7 +305,7 @@ impl<'a> Run<'a> {
         Ok(row)
     }
 
-    fn row(&self, losses: Losses, tally: Tally, rollout: &Rollout, total: f64) -> Row {
+    fn row(&self, losses: Losses, tally: EpisodeStats, rollout: &Rollout, total: f64) -> Row {
         let per_episode = |sum: f64| (tally.episodes > 0.0).then(|| sum / tally.episodes);
         let obstacles = matches!(self.config.task, Task::Obstacles(_));
         Row {
@@ -373,7 +373,7 @@ impl<'a> Run<'a> {
         if self.crossed(self.config.evaluate_every, before) && self.memory.improved() {
             self.save(&self.folder.checkpoint("best"))?;
         }
-        for steps in milestones::crossed(before, self.steps) {
+        for steps in figures::crossed(before, self.steps) {
             self.save(&self.folder.checkpoint_at(steps))?;
         }
         if self.crossed(self.config.checkpoint_every, before) {
@@ -427,7 +427,7 @@ impl<'a> Run<'a> {
                 summary.success = report.success;
                 summary.time_to_target_mean_s = report.time_to_target_mean_s;
                 self.folder.write_summary(&summary)?;
-                milestones::draw(self.folder, &self.rows, self.database, self.config.task)?;
+                figures::draw(self.folder, &self.rows, self.database, self.config.task)?;
                 Ok(summary)
             }
             Err(error) => {

@@ -1,14 +1,14 @@
 //! All environments of a training at once, drawn from where the training keeps them.
 
-use super::body::Body;
+use super::capsule_rig::Body;
 use super::painter::{Mesh, Pass, Pipelines};
 use super::renderer::{Renderer, cube, sphere, vertex_buffer};
 use crate::gpu::Shared;
 use crate::gpu::shader::{DRAW_CROWD, DRAW_CROWD_BLOCKS};
 use crate::motion::database::Database;
 use crate::playback::Shown;
-use crate::world::Task;
-use crate::world::watched::{States, Watched};
+use crate::env::locomotion::Task;
+use crate::env::locomotion::live_view::{States, LiveView};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -35,8 +35,8 @@ struct Params {
 /// A state on the host and its copies on the device.
 struct Copied {
     states: States,
-    real: wgpu::Buffer,
-    whole: wgpu::Buffer,
+    state_f32: wgpu::Buffer,
+    state_u32: wgpu::Buffer,
     boxes: Option<wgpu::Buffer>,
 }
 
@@ -55,7 +55,7 @@ pub struct Crowd {
     pub side: f32,
     copied: Option<Copied>,
     /// Keeps the buffers that are drawn from.
-    _watched: Watched,
+    _watched: LiveView,
 }
 
 impl Crowd {
@@ -63,7 +63,7 @@ impl Crowd {
     pub fn new(
         renderer: &Renderer,
         database: &Database,
-        watched: Watched,
+        watched: LiveView,
         task: &Task,
         envs: usize,
     ) -> Crowd {
@@ -97,18 +97,18 @@ impl Crowd {
         let copied = copied(&watched, |bytes| {
             storage(bytes, read | wgpu::BufferUsages::COPY_DST)
         });
-        let (real, whole, boxes) = match (&watched, &copied) {
-            (Watched::Gpu(buffers), _) => (
-                buffers.real.binding(),
-                buffers.whole.binding(),
+        let (state_f32, state_u32, boxes) = match (&watched, &copied) {
+            (LiveView::Gpu(buffers), _) => (
+                buffers.state_f32.binding(),
+                buffers.state_u32.binding(),
                 buffers.boxes.as_ref().map(Shared::binding),
             ),
             (_, Some(copied)) => (
-                copied.real.as_entire_binding(),
-                copied.whole.as_entire_binding(),
+                copied.state_f32.as_entire_binding(),
+                copied.state_u32.as_entire_binding(),
                 copied.boxes.as_ref().map(wgpu::Buffer::as_entire_binding),
             ),
-            (Watched::Cpu(_), None) => unreachable!("a state on the host is always copied"),
+            (LiveView::Cpu(_), None) => unreachable!("a state on the host is always copied"),
         };
         let (points, bones) = (points.as_entire_binding(), bones.as_entire_binding());
         let corner = wgpu::vertex_attr_array![0 => Float32x4];
@@ -117,7 +117,7 @@ impl Crowd {
             DRAW_CROWD,
             vertex_buffer::<[f32; 4]>(wgpu::VertexStepMode::Vertex, &corner),
             Mesh::new(device, &sphere(8, 2)),
-            vec![real, whole, points, bones, uniform.clone()],
+            vec![state_f32, state_u32, points, bones, uniform.clone()],
             params.envs * (params.bones + 1),
         )];
         if let Some(boxes) = boxes {
@@ -143,8 +143,8 @@ impl Crowd {
     pub fn refresh(&self, queue: &wgpu::Queue) {
         if let Some(copied) = &self.copied {
             let state = copied.states.now();
-            queue.write_buffer(&copied.real, 0, bytemuck::cast_slice(&state.real));
-            queue.write_buffer(&copied.whole, 0, bytemuck::cast_slice(&state.whole));
+            queue.write_buffer(&copied.state_f32, 0, bytemuck::cast_slice(&state.state_f32));
+            queue.write_buffer(&copied.state_u32, 0, bytemuck::cast_slice(&state.state_u32));
             if let Some(boxes) = &copied.boxes {
                 queue.write_buffer(boxes, 0, bytemuck::cast_slice(&state.boxes));
             }
@@ -190,15 +190,15 @@ impl Shape {
     }
 }
 
-fn copied(watched: &Watched, buffer: impl Fn(&[u8]) -> wgpu::Buffer) -> Option<Copied> {
-    let Watched::Cpu(states) = watched else {
+fn copied(watched: &LiveView, buffer: impl Fn(&[u8]) -> wgpu::Buffer) -> Option<Copied> {
+    let LiveView::Cpu(states) = watched else {
         return None;
     };
     let now = states.now();
     let boxes = bytemuck::cast_slice(&now.boxes);
     Some(Copied {
-        real: buffer(bytemuck::cast_slice(&now.real)),
-        whole: buffer(bytemuck::cast_slice(&now.whole)),
+        state_f32: buffer(bytemuck::cast_slice(&now.state_f32)),
+        state_u32: buffer(bytemuck::cast_slice(&now.state_u32)),
         boxes: (!boxes.is_empty()).then(|| buffer(boxes)),
         states: states.clone(),
     })

@@ -1,15 +1,15 @@
 //! Pictures of what a character does: a scene in plain data, and the renderer that draws it into a
 //! texture, for a window or for a file.
 
-pub mod body;
+pub mod capsule_rig;
 pub mod camera;
-pub mod canvas;
+pub mod render_target;
 pub mod crowd;
-pub mod film;
-pub mod marks;
+pub mod image_files;
+pub mod debug_draw;
 pub mod painter;
 pub mod renderer;
-pub mod rollout;
+pub mod playthrough;
 pub mod scene;
 pub mod shapes;
 pub mod strip;

@@ -1,6 +1,6 @@
 //! One kind of shape: its pipelines and the instances to draw.
 
-use super::canvas::{COLOUR, DEPTH, SAMPLES};
+use super::render_target::{COLOUR, DEPTH, SAMPLES};
 use bytemuck::Pod;
 use std::num::NonZeroU64;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};

@@ -1,7 +1,7 @@
 //! Draws a scene: once as the sun sees it, for the shadows, and once as the camera does.
 
 use super::camera::Camera;
-use super::canvas::{Canvas, DEPTH};
+use super::render_target::{Canvas, DEPTH};
 use super::crowd::Crowd;
 use super::painter::{Layouts, Mesh, Painter, Pass, Pipelines};
 use super::scene::{Block, Capsule, Scene};
@@ -203,10 +203,10 @@ fn capsules(device: &wgpu::Device, layouts: &Layouts) -> Painter {
 
 fn blocks(device: &wgpu::Device, layouts: &Layouts) -> Painter {
     let corner = attributes![0 => Float32x3, 1 => Float32x3];
-    let whole = attributes![2 => Float32x3, 3 => Float32x3, 4 => Float32x3];
+    let state_u32 = attributes![2 => Float32x3, 3 => Float32x3, 4 => Float32x3];
     let buffers = [
         vertex_buffer::<[[f32; 3]; 2]>(wgpu::VertexStepMode::Vertex, &corner),
-        vertex_buffer::<Block>(wgpu::VertexStepMode::Instance, &whole),
+        vertex_buffer::<Block>(wgpu::VertexStepMode::Instance, &state_u32),
     ];
     let pipelines = Pipelines::new(device, DRAW_BLOCK, &buffers, layouts);
     Painter::new(device, pipelines, Mesh::new(device, &cube()))

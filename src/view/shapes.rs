@@ -1,9 +1,9 @@
 //! A simulated model as it is: its spheres, capsules and boxes.
 
-use super::body::{LEFT, RIGHT, TRUNK};
+use super::capsule_rig::{LEFT, RIGHT, TRUNK};
 use super::scene::{Colour, Scene};
-use crate::body::model::{Geom, Model, Shape};
-use crate::body::pose::Pose;
+use crate::physics::model::{Geom, Model, Shape};
+use crate::physics::pose::Pose;
 use glam::{Quat, Vec3};
 
 /// What a ghost's colours are mixed with, by what share.

@@ -2,17 +2,17 @@
 //! given the recorded angles.
 
 use super::camera::Camera;
-use super::canvas::Canvas;
-use super::film;
+use super::render_target::Canvas;
+use super::image_files;
 use super::renderer::Renderer;
 use super::scene::Scene;
 use super::shapes::{self, Look};
-use crate::body::kinematics::kinematics;
-use crate::body::model::Model;
-use crate::body::motion::{BodyMotion, targets};
-use crate::body::physics::{Physics, STEP_RATE, SUBSTEPS, Settings, State};
-use crate::body::pose::Pose;
-use crate::body::spatial::Spatial;
+use crate::physics::kinematics::kinematics;
+use crate::physics::model::Model;
+use crate::physics::motion_clip::{BodyMotion, targets};
+use crate::physics::simulator::{Physics, STEP_RATE, SUBSTEPS, Settings, State};
+use crate::physics::pose::Pose;
+use crate::physics::spatial::Spatial;
 use crate::gpu::Gpu;
 use anyhow::{Context, Result};
 use glam::Vec3;
@@ -127,8 +127,8 @@ impl<'a> Strip<'a> {
     /// One picture beside the other.
     fn write(&mut self, path: &Path, shots: Vec<Shot>) -> Result<()> {
         let [width, height] = SIZE.map(|side| side as usize);
-        let whole = PICTURES * (width + GAP) - GAP;
-        let mut strip = vec![255; 3 * whole * height];
+        let state_u32 = PICTURES * (width + GAP) - GAP;
+        let mut strip = vec![255; 3 * state_u32 * height];
         for (place, shot) in shots.iter().enumerate() {
             self.camera.follow([shot.focus.x, shot.focus.z], 1.0);
             self.camera.distance = NEAR + WIDE * shot.side;
@@ -137,12 +137,12 @@ impl<'a> Strip<'a> {
             let picture = self
                 .canvas
                 .read(&self.renderer.device, &self.renderer.queue)?;
-            let rows = strip.chunks_exact_mut(3 * whole);
+            let rows = strip.chunks_exact_mut(3 * state_u32);
             for (row, pixels) in rows.zip(picture.chunks_exact(3 * width)) {
                 row[3 * place * (width + GAP)..][..3 * width].copy_from_slice(pixels);
             }
         }
-        film::png(path, [whole as u32, SIZE[1]], &strip)
+        image_files::png(path, [state_u32 as u32, SIZE[1]], &strip)
     }
 }
 

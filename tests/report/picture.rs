@@ -1,7 +1,7 @@
 //! Pictures are written whole or not at all.
 
 use super::{Picture, training};
-use footwork::report::{learning_curve, picture};
+use footwork::report::{learning_curve, png_file};
 use std::fs;
 
 #[test]
@@ -22,8 +22,8 @@ fn a_picture_that_cannot_be_written_is_an_error_and_leaves_nothing() {
 fn a_failed_picture_leaves_the_previous_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("picture.png");
-    picture::save(&path, 2, 1, &[0, 1, 2, 3, 4, 5]).unwrap();
-    assert!(picture::save(&path, 2, 1, &[9; 5]).is_err(), "a byte short");
+    png_file::save(&path, 2, 1, &[0, 1, 2, 3, 4, 5]).unwrap();
+    assert!(png_file::save(&path, 2, 1, &[9; 5]).is_err(), "a byte short");
     assert_eq!(Picture::open(&path).rgb, [0, 1, 2, 3, 4, 5]);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }

@@ -1,7 +1,7 @@
 //! Pictures against kept ones, with a tolerance; what differs is kept for a look.
 
 use crate::Picture;
-use footwork::report::picture;
+use footwork::report::png_file;
 use std::path::{Path, PathBuf};
 
 /// A pixel differs if one of its colours does by more than this.
@@ -64,7 +64,7 @@ impl Picture {
     }
 
     pub fn save(&self, path: &Path) {
-        picture::save(path, self.size[0], self.size[1], &self.rgb).unwrap();
+        png_file::save(path, self.size[0], self.size[1], &self.rgb).unwrap();
     }
 }
 

@@ -1,11 +1,11 @@
 use crate::{DATABASE, Picture, gpu};
 use footwork::gpu::Device;
-use footwork::kernels::layout::{boxes, real, whole};
+use footwork::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
 use footwork::playback::Shown;
-use footwork::view::body::Body;
+use footwork::view::capsule_rig::Body;
 use footwork::view::scene::Block;
 use footwork::view::{Camera, Crowd, Renderer, Scene};
-use footwork::world::{self, Obstacles, Plane, Setup, Task, World};
+use footwork::env::locomotion::{self, Obstacles, Plane, Setup, Task, World};
 use glam::Vec3;
 
 const SIZE: [u32; 2] = [240, 160];
@@ -18,7 +18,7 @@ fn one(device: &Device, task: Task) -> Box<dyn World> {
         seed: 5,
         level: 9,
     };
-    world::open(device, &DATABASE, &setup)
+    locomotion::open(device, &DATABASE, &setup)
 }
 
 /// A crowd of one must look like its only character, wherever its state is kept.
@@ -35,14 +35,14 @@ fn one_of_a_crowd(device: Device) {
     }
     let state = world.snapshot().unwrap();
     let shown = Shown {
-        frame: state.whole[whole::FRAME] as usize,
-        at: [state.real[real::X], state.real[real::Z]],
-        heading: [state.real[real::HEADING_X], state.real[real::HEADING_Z]],
+        frame: state.state_u32[state_u32::FRAME] as usize,
+        at: [state.state_f32[state_f32::X], state.state_f32[state_f32::Z]],
+        heading: [state.state_f32[state_f32::HEADING_X], state.state_f32[state_f32::HEADING_Z]],
     };
     let mut scene = Scene::default();
     let body = Body::of(&DATABASE.skeleton, &DATABASE.roles);
     body.draw(&mut scene, &DATABASE.skeleton, &shown.pose(&DATABASE));
-    let target = Vec3::new(state.real[real::TARGET_X], 0.0, state.real[real::TARGET_Z]);
+    let target = Vec3::new(state.state_f32[state_f32::TARGET_X], 0.0, state.state_f32[state_f32::TARGET_Z]);
     scene.capsule(
         target,
         0.06,

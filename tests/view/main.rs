@@ -8,16 +8,16 @@ mod viewer;
 use footwork::gpu::Gpu;
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
-use footwork::motion::performer;
+use footwork::motion::synthetic;
 use footwork::playback::player::Style;
 use footwork::train::controller::{Controller, Scripted};
-use footwork::view::rollout::Stage;
+use footwork::view::playthrough::Stage;
 use footwork::view::{Camera, Canvas, Crowd, Renderer, Scene};
-use footwork::world::Task;
+use footwork::env::locomotion::Task;
 use std::sync::{Arc, LazyLock};
 
 static DATABASE: LazyLock<Arc<Database>> = LazyLock::new(|| {
-    let (clips, roles) = performer::perform(1, 1.0);
+    let (clips, roles) = synthetic::perform(1, 1.0);
     Arc::new(Database::build(&clips, roles, Weights::PAPER).unwrap())
 });
 

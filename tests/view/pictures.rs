@@ -1,10 +1,10 @@
 use crate::{DATABASE, Picture, Walker, stage};
 use footwork::playback::Shown;
-use footwork::view::body::Body;
-use footwork::view::marks::scene;
-use footwork::view::rollout::Rollout;
+use footwork::view::capsule_rig::Body;
+use footwork::view::debug_draw::scene;
+use footwork::view::playthrough::Rollout;
 use footwork::view::{Camera, Scene};
-use footwork::world::{Obstacles, Plane, Task};
+use footwork::env::locomotion::{Obstacles, Plane, Task};
 
 const SIZE: [u32; 2] = [240, 160];
 

@@ -5,13 +5,13 @@ use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
-use footwork::kernels::layout::end;
-use footwork::motion::features::PLAYED;
-use footwork::play::Viewer;
-use footwork::play::viewer::Choice;
-use footwork::play::window::shared;
-use footwork::view::rollout::Rollout;
-use footwork::world::{Obstacles, Plane, Task};
+use footwork::kernels::locomotion::locomotion_layout::termination;
+use footwork::motion::features::FRAMES_PER_STEP;
+use footwork::viewer::Viewer;
+use footwork::viewer::app::Choice;
+use footwork::viewer::window::shared;
+use footwork::view::playthrough::Rollout;
+use footwork::env::locomotion::{Obstacles, Plane, Task};
 
 fn plane() -> Task {
     Task::Plane(Plane::default())
@@ -89,15 +89,15 @@ fn pauses_steps_and_goes_back() {
 fn a_rewound_rollout_plays_the_same_again() {
     let mut harness = open(plane(), vec![walker()]);
     press(&mut harness, "Pause");
-    for _ in 0..2 * PLAYED {
+    for _ in 0..2 * FRAMES_PER_STEP {
         press(&mut harness, "Step");
     }
     let (shown, frame) = (harness.state().shown(), harness.state().timeline().at());
-    for _ in 0..2 * PLAYED {
+    for _ in 0..2 * FRAMES_PER_STEP {
         press(&mut harness, "Back");
     }
     assert_ne!(harness.state().shown(), shown);
-    for _ in 0..2 * PLAYED {
+    for _ in 0..2 * FRAMES_PER_STEP {
         press(&mut harness, "Step");
     }
     assert_eq!(harness.state().timeline().at(), frame);
@@ -167,11 +167,11 @@ fn is_steered_by_keys() {
         let [x, z] = harness.state().shown().at;
         -(x * 0.7f32.sin() + z * 0.7f32.cos())
     };
-    let begun = away(&harness);
+    let just_reset = away(&harness);
     harness.key_down(Key::W);
     harness.run_steps(120);
     harness.key_up(Key::W);
-    assert!(away(&harness) - begun > 1.5, "{}", away(&harness) - begun);
+    assert!(away(&harness) - just_reset > 1.5, "{}", away(&harness) - just_reset);
 }
 
 #[test]
@@ -220,10 +220,10 @@ fn a_target_set_on_arrival_stays() {
     let mut rollout = Rollout::new(&stage, 0);
     rollout.set_target(rollout.shown.at);
     rollout.advance(&stage, &Walker).unwrap();
-    let ended = rollout.step.as_ref().map(|step| step.ended);
-    assert_eq!(ended, Some(end::REACHED));
+    let termination = rollout.step.as_ref().map(|step| step.termination);
+    assert_eq!(termination, Some(termination::REACHED));
     rollout.set_target([40.0, 30.0]);
-    for _ in 0..=PLAYED {
+    for _ in 0..=FRAMES_PER_STEP {
         rollout.advance(&stage, &Walker).unwrap();
     }
     assert_eq!(rollout.target(), [40.0, 30.0]);

@@ -1,7 +1,7 @@
 //! The first half of a BVH file: the tree of joints and their channels.
 
-use super::super::error::{Error, Result};
-use super::super::skeleton::Skeleton;
+use crate::motion::error::{Error, Result};
+use crate::motion::skeleton::Skeleton;
 use glam::Vec3;
 use std::collections::HashSet;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! From the text of a BVH file to a recording.
 
-use super::super::error::{Error, Result};
+use crate::motion::error::{Error, Result};
 use super::Recording;
 use super::hierarchy::{self, Channel, Hierarchy, problem};
 use super::values::{self, Values};

@@ -1,7 +1,7 @@
 //! From a clip to a BVH file.
 
-use super::super::clip::Clip;
-use super::super::error::{Error, Result};
+use crate::motion::clip::Clip;
+use crate::motion::error::{Error, Result};
 use glam::{DQuat, EulerRot, Vec3};
 use std::fmt::Write;
 use std::path::Path;
@@ -12,7 +12,7 @@ const CENTIMETRES: f32 = 100.0;
 /// Writes a clip as a BVH file in centimetres, whole or not at all. See [`to_text`].
 pub fn write(path: &Path, clip: &Clip) -> Result<()> {
     let text = to_text(clip)?;
-    Ok(crate::store::write_whole(path, text.as_bytes())?)
+    Ok(crate::container::write_whole(path, text.as_bytes())?)
 }
 
 /// The text of a BVH file in centimetres: six channels for the root and three for the others,

@@ -1,0 +1,128 @@
+//! The networks of both tasks' preset `fast`: the policy's mean for many observations at once, and
+//! learning from a whole rollout.
+
+use super::clock::{TOO_LONG_S, Work, seconds};
+use super::training::{config, held};
+use super::{Bench, ENVS, Item, Record};
+use crate::motion::features::TRAJECTORY_DIM;
+use crate::nn::network::Shape;
+use crate::rl::rollout::Rollout;
+use crate::rl::ppo::update::Learner;
+use crate::nn::tensors::read;
+use crate::train::config::{Config, Kind, Preset};
+use anyhow::{Context, Result};
+use burn::tensor::{Device, Distribution, Tensor};
+
+pub fn measure(bench: &Bench, record: &mut Record) -> Result<()> {
+    for (stage, measure) in [("network", forward as Stage), ("update", update)] {
+        if !bench.plan.wants(stage) {
+            continue;
+        }
+        for kind in [Kind::Plane, Kind::Obstacles] {
+            let mut last = 0.0;
+            for envs in ENVS {
+                if 4.0 * last > TOO_LONG_S || !held(bench, kind, envs) {
+                    break;
+                }
+                last = measure(bench, kind, envs, record)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Measures with so many environments and returns the seconds it takes once.
+type Stage = fn(&Bench, Kind, usize, &mut Record) -> Result<f64>;
+
+fn forward(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Result<f64> {
+    let Bench { place, ceiling, .. } = *bench;
+    let config = Config::preset(kind, Preset::Fast);
+    let width = config.task.width();
+    (record.tell)(&format!(
+        "{}: network, {} of {envs}",
+        place.name(),
+        config.task.name()
+    ));
+    let shape = Shape::new(&config.ppo.network, width).context("a network")?;
+    let time = place.inside(|| -> Result<f64> {
+        let tensors = place.device.tensors();
+        let policy = Learner::new(&config.ppo, width, &place.device, 1)?.policy();
+        let observation = Tensor::<2>::ones([envs, width], &tensors);
+        seconds(place, || {
+            let _ = policy.mean(observation.clone());
+            Ok(())
+        })
+    })?;
+    let item = Item {
+        stage: "network",
+        variant: config.task.name(),
+        frames: 0,
+        envs,
+        batch: envs,
+        bytes: Some(4 * shape.parameters()),
+        work: Work {
+            bytes: 0.0,
+            operations: shape.actor_operations() as f64,
+        },
+    };
+    record.add(place, ceiling, item, time);
+    Ok(time)
+}
+
+/// An update from a rollout of noise.
+fn update(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Result<f64> {
+    let Bench { place, ceiling, .. } = *bench;
+    let config = config(kind, envs);
+    let (ppo, width) = (&config.ppo, config.task.width());
+    (record.tell)(&format!(
+        "{}: update, {} of {envs}",
+        place.name(),
+        config.task.name()
+    ));
+    let shape = Shape::new(&ppo.network, width).context("a network")?;
+    let time = place.inside(|| -> Result<f64> {
+        let tensors = place.device.tensors();
+        let mut learner = Learner::new(ppo, width, &place.device, 1)?;
+        let rollout = noise(ppo.batch(), width, &tensors);
+        seconds(place, || {
+            read(learner.update(&rollout, ppo))?;
+            Ok(())
+        })
+    })?;
+    let item = Item {
+        stage: "update",
+        variant: config.task.name(),
+        frames: 0,
+        envs,
+        batch: ppo.batch(),
+        bytes: Some(4 * 3 * shape.parameters()),
+        work: Work {
+            bytes: 0.0,
+            // Forward, and twice as much back, in every pass.
+            operations: (3 * ppo.epochs * shape.operations()) as f64,
+        },
+    };
+    record.add(place, ceiling, item, time);
+    Ok(time)
+}
+
+/// A rollout of `samples` that learning takes in as any other.
+fn noise(samples: usize, width: usize, device: &Device) -> Rollout {
+    let rows = |width: usize| {
+        Tensor::<2>::random([samples, width], Distribution::Normal(0.0, 1.0), device)
+    };
+    let scalars = || rows(1).squeeze_dim::<1>(1);
+    Rollout {
+        observation: rows(width),
+        action: rows(TRAJECTORY_DIM),
+        mean: rows(TRAJECTORY_DIM),
+        // About what such actions have.
+        log_prob: scalars().sub_scalar(20.0),
+        value: scalars(),
+        advantage: scalars(),
+        target: scalars(),
+        log_std: Tensor::zeros([TRAJECTORY_DIM], device),
+        act_s: 0.0,
+        simulate_s: 0.0,
+    }
+}

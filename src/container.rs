@@ -1,0 +1,315 @@
+//! A checksummed file of a JSON header and plain arrays: the form of databases and checkpoints.
+//!
+//! Layout, little-endian: the 8 bytes `footwork`, the kind (8 bytes, zero-padded), version
+//! (u32), CRC-32 of the rest (u32), length of the header (u64), header, arrays. Files are
+//! written beside their place and renamed: whole or not at all.
+
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// What went wrong with a file.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    #[error("cannot read {path}: {error}; check that it exists and may be read")]
+    Read {
+        path: PathBuf,
+        error: std::io::Error,
+    },
+    #[error(
+        "cannot write {path}: {error}; nothing was written: check the folder, its rights and the free space"
+    )]
+    Write { path: PathBuf, error: String },
+    #[error("{path} is not a footwork {}", spelled(.kind))]
+    Foreign { path: PathBuf, kind: &'static str },
+    #[error("{path} is a footwork {}, not a {}", spelled(.found), spelled(.wanted))]
+    OtherKind {
+        path: PathBuf,
+        found: String,
+        wanted: &'static str,
+    },
+    #[error(
+        "{path} has format version {found}; this program reads up to {known}: use a newer footwork"
+    )]
+    Newer {
+        path: PathBuf,
+        found: u32,
+        known: u32,
+    },
+    #[error(
+        "{path} has format version {found}, which this program no longer reads ({known} is its own): make it again, or use the footwork that wrote it"
+    )]
+    Older {
+        path: PathBuf,
+        found: u32,
+        known: u32,
+    },
+    #[error("{path} is damaged ({why}): make it again or take another copy")]
+    Damaged { path: PathBuf, why: String },
+}
+
+/// Kind and version of a file.
+#[derive(Clone, Copy)]
+pub struct Format {
+    pub kind: &'static str,
+    pub version: u32,
+}
+
+/// A kind in full; files have only eight bytes for it.
+fn spelled(kind: &str) -> &str {
+    match kind {
+        "checkpt" => "checkpoint",
+        other => other,
+    }
+}
+
+const MAGIC: &[u8; 8] = b"footwork";
+const PREFIX: usize = 32;
+
+#[derive(Serialize, Deserialize)]
+struct Contents<H> {
+    header: H,
+    /// Name and number of four-byte values.
+    arrays: Vec<(String, u64)>,
+}
+
+/// Named arrays of four-byte values (f32, u32), as raw bytes.
+#[derive(Default)]
+pub struct Arrays(Vec<(String, Vec<u8>)>);
+
+impl Arrays {
+    pub fn put<T: bytemuck::Pod>(&mut self, name: &str, values: &[T]) {
+        self.0
+            .push((name.to_string(), bytemuck::cast_slice(values).to_vec()));
+    }
+
+    /// Takes an array out by name; `None` if the file has no such array or it has another shape.
+    pub fn take<T: bytemuck::Pod>(&mut self, name: &str) -> Option<Vec<T>> {
+        let at = self.0.iter().position(|(other, _)| other == name)?;
+        let (_, bytes) = self.0.swap_remove(at);
+        bytes
+            .len()
+            .is_multiple_of(size_of::<T>())
+            .then(|| bytemuck::pod_collect_to_vec(&bytes))
+    }
+}
+
+/// What one part of a program saves into a file that many parts share: values by name, and arrays.
+#[derive(Default)]
+pub struct Section {
+    values: serde_json::Map<String, serde_json::Value>,
+    arrays: Arrays,
+}
+
+/// A section that does not hold what it should.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct SectionError(pub String);
+
+impl Section {
+    /// Saves a value under a name. Floats of 64 bits belong into arrays: JSON may round them.
+    pub fn put(&mut self, name: &str, value: impl Serialize) {
+        // Numbers, text and plain structs always have a JSON form.
+        let value = serde_json::to_value(value).unwrap_or_default();
+        self.values.insert(name.to_string(), value);
+    }
+
+    /// Saves an array under a name.
+    pub fn put_array<T: bytemuck::Pod>(&mut self, name: &str, values: &[T]) {
+        self.arrays.put(name, values);
+    }
+
+    /// The value of a name.
+    ///
+    /// # Errors
+    /// There is none, or it is of another type.
+    pub fn get<T: DeserializeOwned>(&self, name: &str) -> Result<T, SectionError> {
+        let value = self.values.get(name).cloned();
+        let value = value.ok_or_else(|| SectionError(format!("it has no `{name}`")))?;
+        serde_json::from_value(value).map_err(|error| SectionError(format!("`{name}`: {error}")))
+    }
+
+    /// Takes out the array of a name, which must have `len` elements.
+    ///
+    /// # Errors
+    /// There is none, or it has another length.
+    pub fn take_array<T: bytemuck::Pod>(
+        &mut self,
+        name: &str,
+        len: usize,
+    ) -> Result<Vec<T>, SectionError> {
+        let values: Vec<T> = self
+            .arrays
+            .take(name)
+            .ok_or_else(|| SectionError(format!("it has no array `{name}`")))?;
+        if values.len() != len {
+            let found = values.len();
+            return Err(SectionError(format!(
+                "its array `{name}` has {found} numbers, not {len}"
+            )));
+        }
+        Ok(values)
+    }
+}
+
+impl Section {
+    /// [`Section::take_array`] of floats that must be finite.
+    ///
+    /// # Errors
+    /// As there; or a number is not finite.
+    pub fn take_finite(&mut self, name: &str, len: usize) -> Result<Vec<f32>, SectionError> {
+        let values = self.take_array::<f32>(name, len)?;
+        match values.iter().all(|value| value.is_finite()) {
+            true => Ok(values),
+            false => Err(SectionError(format!(
+                "its array `{name}` has numbers that are not finite"
+            ))),
+        }
+    }
+}
+
+/// Writes a file whole or not at all.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+    replace(path, bytes).map_err(|error| {
+        // Without tempfile's "at path ...": where the temporary file was helps nobody.
+        let error = error.to_string();
+        let cause = error.split(" at path ").next().unwrap_or_default();
+        StoreError::Write {
+            path: path.to_path_buf(),
+            error: cause.to_string(),
+        }
+    })
+}
+
+/// Writes beside the place and renames.
+fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    // Renaming would put a plain file in the place of a device or a pipe.
+    if path.metadata().is_ok_and(|there| !there.is_file()) {
+        return Err(std::io::Error::other(
+            "something is there that is no regular file",
+        ));
+    }
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".footwork-");
+    // A temporary file is private; this one will be as public as the umask makes files.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    file.persist(path)?;
+    Ok(())
+}
+
+/// Writes header and arrays.
+pub fn save<H: Serialize>(
+    path: &Path,
+    format: Format,
+    header: &H,
+    arrays: &Arrays,
+) -> Result<(), StoreError> {
+    let names = arrays
+        .0
+        .iter()
+        .map(|(name, bytes)| (name.clone(), bytes.len() as u64 / 4))
+        .collect();
+    let json = serde_json::to_vec(&Contents {
+        header,
+        arrays: names,
+    })
+    .map_err(|error| StoreError::Write {
+        path: path.to_path_buf(),
+        error: error.to_string(),
+    })?;
+    let mut rest = (json.len() as u64).to_le_bytes().to_vec();
+    rest.extend(json);
+    for (_, bytes) in &arrays.0 {
+        rest.extend(bytes);
+    }
+    let mut kind = [0; 8];
+    kind[..format.kind.len()].copy_from_slice(format.kind.as_bytes());
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(kind);
+    bytes.extend(format.version.to_le_bytes());
+    bytes.extend(crc32fast::hash(&rest).to_le_bytes());
+    bytes.extend(rest);
+    write_whole(path, &bytes)
+}
+
+/// Reads header and arrays back.
+pub fn load<H: DeserializeOwned>(path: &Path, format: Format) -> Result<(H, Arrays), StoreError> {
+    let bytes = std::fs::read(path).map_err(|error| StoreError::Read {
+        path: path.to_path_buf(),
+        error,
+    })?;
+    let damaged = |why: &str| StoreError::Damaged {
+        path: path.to_path_buf(),
+        why: why.to_string(),
+    };
+    if !bytes.starts_with(MAGIC) {
+        return Err(StoreError::Foreign {
+            path: path.to_path_buf(),
+            kind: format.kind,
+        });
+    }
+    if bytes.len() < PREFIX {
+        return Err(damaged("it ends within its first 32 bytes"));
+    }
+    let kind = String::from_utf8_lossy(&bytes[8..16])
+        .trim_end_matches('\0')
+        .to_string();
+    if kind != format.kind {
+        return Err(StoreError::OtherKind {
+            path: path.to_path_buf(),
+            found: kind,
+            wanted: format.kind,
+        });
+    }
+    let word =
+        |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+    if word(16) < format.version {
+        return Err(StoreError::Older {
+            path: path.to_path_buf(),
+            found: word(16),
+            known: format.version,
+        });
+    }
+    if word(16) > format.version {
+        return Err(StoreError::Newer {
+            path: path.to_path_buf(),
+            found: word(16),
+            known: format.version,
+        });
+    }
+    let rest = &bytes[24..];
+    if crc32fast::hash(rest) != word(20) {
+        return Err(damaged("its checksum does not match its contents"));
+    }
+    let length = u64::from(word(24)) | u64::from(word(28)) << 32;
+    let json = usize::try_from(length)
+        .ok()
+        .and_then(|length| rest.get(8..8usize.checked_add(length)?));
+    let json = json.ok_or_else(|| damaged("its header is longer than the file"))?;
+    let contents: Contents<H> =
+        serde_json::from_slice(json).map_err(|error| damaged(&error.to_string()))?;
+    let mut data = &rest[8 + json.len()..];
+    let mut arrays = Arrays::default();
+    for (name, words) in contents.arrays {
+        let length = usize::try_from(words)
+            .ok()
+            .and_then(|words| words.checked_mul(4));
+        let (array, after) = length
+            .and_then(|length| data.split_at_checked(length))
+            .ok_or_else(|| damaged(&format!("array `{name}` is cut off")))?;
+        arrays.0.push((name, array.to_vec()));
+        data = after;
+    }
+    if !data.is_empty() {
+        return Err(damaged("it is longer than its contents"));
+    }
+    Ok((contents.header, arrays))
+}

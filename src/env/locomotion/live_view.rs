@@ -1,0 +1,63 @@
+//! Worlds, seen from outside while they run.
+
+use super::env_state::fields;
+use crate::gpu::Shared;
+use crate::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Where worlds keep what there is to see.
+pub enum LiveView {
+    /// The GPU's own buffers: whoever draws on that device reads them in place.
+    Gpu(Box<Buffers>),
+    /// The latest step's state of worlds on the CPU.
+    Cpu(States),
+}
+
+pub struct Buffers {
+    /// `[state_f32::FIELDS][envs]`, see [`crate::kernels::locomotion::locomotion_layout`].
+    pub state_f32: Shared,
+    /// `[state_u32::FIELDS][envs]`
+    pub state_u32: Shared,
+    /// `[envs][boxes::FIELDS][count]`, where there are obstacles.
+    pub boxes: Option<Shared>,
+}
+
+/// On the host: the parts of a batch, whose steps need not be the same.
+#[derive(Clone)]
+pub struct States(pub Vec<Arc<Mutex<State>>>);
+
+/// The same of one part.
+#[derive(Clone, Debug, Default)]
+pub struct State {
+    pub state_f32: Vec<f32>,
+    pub state_u32: Vec<u32>,
+    pub boxes: Vec<f32>,
+}
+
+impl State {
+    /// Takes what a step has left.
+    pub fn set(&mut self, state_f32: &[f32], state_u32: &[u32], boxes: &[f32]) {
+        self.state_f32.clear();
+        self.state_f32.extend_from_slice(state_f32);
+        self.state_u32.clear();
+        self.state_u32.extend_from_slice(state_u32);
+        self.boxes.clear();
+        self.boxes.extend_from_slice(boxes);
+    }
+}
+
+impl States {
+    /// Of all parts together.
+    pub fn now(&self) -> State {
+        let locked = |part: &Arc<Mutex<State>>| {
+            let state = part.lock().unwrap_or_else(PoisonError::into_inner);
+            state.clone()
+        };
+        let parts: Vec<State> = self.0.iter().map(locked).collect();
+        State {
+            state_f32: fields(state_f32::FIELDS, &parts, |part| &part.state_f32),
+            state_u32: fields(state_u32::FIELDS, &parts, |part| &part.state_u32),
+            boxes: fields(1, &parts, |part| &part.boxes),
+        }
+    }
+}

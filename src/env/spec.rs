@@ -1,0 +1,52 @@
+//! What an environment observes, how it acts, and how long a step lasts.
+
+use serde::{Deserialize, Serialize};
+
+/// An observation of one agent: a vector, and maps beside it where there are any.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ObservationSpec {
+    /// Numbers of the vector; they come first.
+    pub vector: usize,
+    /// `[height, width, channels]` of the maps that follow it, channels last.
+    pub grid: Option<[usize; 3]>,
+}
+
+impl ObservationSpec {
+    /// Numbers of an observation, the maps included.
+    pub fn dim(&self) -> usize {
+        self.vector + self.grid.map_or(0, |shape| shape.iter().product())
+    }
+}
+
+/// The dimensions of a batch of environments. Rows of a batch are `envs * agents`, the agents of an
+/// environment side by side.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EnvSpec {
+    /// Environments stepped together.
+    pub envs: usize,
+    /// Agents of an environment: two fighters of one world are two rows.
+    pub agents: usize,
+    pub observation: ObservationSpec,
+    /// Numbers of an action.
+    pub action: usize,
+    /// Length of a step, s.
+    pub dt: f32,
+    /// Terminations after which the value of the final observation goes on (Gymnasium's truncation),
+    /// the bit `1 << termination` for each.
+    pub bootstrap: u32,
+    /// Whether an environment may have two such terminations in one rollout. If not, one row of final
+    /// observations suffices for it, whatever the length of the rollout.
+    pub bootstraps_often: bool,
+}
+
+impl EnvSpec {
+    /// Rows of a batch.
+    pub fn rows(&self) -> usize {
+        self.envs * self.agents
+    }
+
+    /// Steps whose final observations a rollout of `length` steps keeps.
+    pub fn final_steps(&self, length: usize) -> usize {
+        if self.bootstraps_often { length } else { 1 }
+    }
+}

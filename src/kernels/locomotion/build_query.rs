@@ -1,0 +1,47 @@
+//! Motion-matching queries: pose of the frame now shown, trajectory from the action.
+//! Shader: `shaders/world/query.wgsl`.
+
+use super::locomotion_layout::state_u32;
+use crate::gpu::kernel::groups;
+use crate::gpu::{Buffer, Gpu, shader};
+use crate::motion::database::ROW_STRIDE;
+use crate::motion::features::{FEATURE_DIM, POSE_DIM, TRAJECTORY_DIM};
+
+crate::shader_params! {
+    pub struct Params for build_query {
+        pub envs: u32,
+    }
+}
+
+pub fn launch(
+    gpu: &Gpu,
+    features: &Buffer<f32>,
+    state_u32: &Buffer<u32>,
+    action: &Buffer<f32>,
+    queries: &Buffer<f32>,
+    params: &Params,
+) {
+    let groups = groups(&shader::BUILD_QUERY, params.envs as usize);
+    gpu.launch(
+        &shader::BUILD_QUERY,
+        groups,
+        &[features, state_u32, action, queries],
+        params,
+    );
+}
+
+pub fn twin(
+    features: &[[f32; ROW_STRIDE]],
+    state_u32: &[u32],
+    action: &[f32],
+    queries: &mut [[f32; ROW_STRIDE]],
+    params: &Params,
+) {
+    let envs = params.envs as usize;
+    for (env, row) in queries.iter_mut().enumerate().take(envs) {
+        let frame = state_u32[state_u32::FRAME * envs + env] as usize;
+        row[..POSE_DIM].copy_from_slice(&features[frame][..POSE_DIM]);
+        row[POSE_DIM..FEATURE_DIM].copy_from_slice(&action[env * TRAJECTORY_DIM..(env + 1) * TRAJECTORY_DIM]);
+        row[FEATURE_DIM..].fill(1.0);
+    }
+}

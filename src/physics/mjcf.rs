@@ -1,0 +1,89 @@
+//! Reads models from MJCF, MuJoCo's file format.
+//!
+//! Bodies with free, ball and hinge joints; planes, spheres, capsules and boxes; default classes;
+//! drives to a position; excluded contacts. All this means what it means to MuJoCo, but for `motor`
+//! (see [`drive`]). The simulator has its own time step and solver, so that those of the file do not
+//! count. What cannot change the dynamics is skipped, and everything else refused.
+
+mod class;
+mod drive;
+mod element;
+mod error;
+mod frame;
+mod geom;
+mod grammar;
+mod joint;
+mod mass;
+mod settings;
+mod exclude;
+mod worldbody;
+
+use super::model::Model;
+use class::Classes;
+use element::Element;
+pub use error::{Error, Result};
+use grammar::MUJOCO;
+use roxmltree::Document;
+use settings::Settings;
+use std::io::Read;
+use std::path::Path;
+pub use touch::ordered;
+use world::World;
+
+pub const MAX_BYTES: u64 = 1 << 20;
+
+pub fn read(path: &Path) -> Result<Model> {
+    let failed = |error| Error::Read {
+        path: path.to_path_buf(),
+        error,
+    };
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(failed)?;
+    // One more than allowed: enough to be refused.
+    let mut file = file.take(MAX_BYTES + 1);
+    file.read_to_end(&mut bytes).map_err(failed)?;
+    refuse_large(bytes.len(), path)?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        Error::Mjcf {
+            path: path.to_path_buf(),
+            line: 1 + good.iter().filter(|byte| **byte == b'\n').count() as u32,
+            problem: "bytes that are not UTF-8; save the file as UTF-8".to_string(),
+        }
+    })?;
+    parse(&text, path)
+}
+
+fn refuse_large(bytes: usize, path: &Path) -> Result<()> {
+    match bytes as u64 <= MAX_BYTES {
+        true => Ok(()),
+        false => Err(Error::TooLarge {
+            path: path.to_path_buf(),
+            limit: MAX_BYTES,
+        }),
+    }
+}
+
+/// `file` is what errors call it.
+pub fn parse(text: &str, file: &Path) -> Result<Model> {
+    refuse_large(text.len(), file)?;
+    let document = Document::parse(text).map_err(|error| Error::Mjcf {
+        path: file.to_path_buf(),
+        line: error.pos().row,
+        problem: format!("this is no valid XML: {error}"),
+    })?;
+    let root = Element::new(file, document.root_element());
+    if root.tag() != "mujoco" {
+        return Err(root.error("is not what MJCF begins with: <mujoco>"));
+    }
+    root.check(&MUJOCO)?;
+    let settings = Settings::read(&root)?;
+    let classes = Classes::read(&root)?;
+    let mut world = World::read(&root, &settings, &classes)?;
+    world.drives(&root)?;
+    world.pairs(&root)?;
+    let mut model = world.model;
+    model.name = root.word("model").unwrap_or_default().to_string();
+    model.loosen();
+    Ok(model)
+}

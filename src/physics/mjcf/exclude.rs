@@ -1,0 +1,77 @@
+//! Which geoms may touch: all those that neither their kinds nor their bodies keep apart.
+
+use super::element::Element;
+use super::error::Result;
+use super::grammar::{CONTACT, EXCLUDE};
+use super::worldbody::World;
+use crate::physics::collision::Family;
+use crate::physics::model::{Geom, Shape};
+use std::collections::HashSet;
+
+impl<'a> World<'a> {
+    pub fn pairs(&mut self, root: &Element<'a>) -> Result<()> {
+        let apart = self.excluded(root)?;
+        let geoms = self.model.geoms.len();
+        let all = (0..geoms).flat_map(|a| (a + 1..geoms).map(move |b| [a, b]));
+        let may: Vec<[usize; 2]> = all.filter(|&pair| self.may_touch(pair, &apart)).collect();
+        self.model.pairs = ordered(&self.model.geoms, may);
+        Ok(())
+    }
+
+    fn may_touch(&self, pair: [usize; 2], apart: &HashSet<[usize; 2]>) -> bool {
+        let [a, b] = pair.map(|geom| self.touching[geom]);
+        let (first, second) = (&self.places[a.0], &self.places[b.0]);
+        // The bodies that those welded together hang on.
+        let above = |weld: usize| self.places[self.places[weld].parent].weld;
+        let relatives = above(first.weld) == second.weld || above(second.weld) == first.weld;
+        let moving = first.weld != 0 && second.weld != 0;
+        a.1.meet(b.1)
+            && first.weld != second.weld
+            && !(moving && relatives)
+            && !apart.contains(&[a.0, b.0])
+    }
+
+    /// Pairs of places, both ways round.
+    fn excluded(&mut self, root: &Element<'a>) -> Result<HashSet<[usize; 2]>> {
+        let mut apart = HashSet::new();
+        for child in root.within("contact", &CONTACT)? {
+            child.check(&EXCLUDE)?;
+            self.name(&child)?;
+            let [a, b] = [self.place(&child, "body1")?, self.place(&child, "body2")?];
+            apart.extend([[a, b], [b, a]]);
+        }
+        Ok(apart)
+    }
+
+    fn place(&self, element: &Element, attribute: &str) -> Result<usize> {
+        let name = element.naming(attribute)?;
+        if name == "world" {
+            return Ok(0);
+        }
+        let mut names = self.places.iter().map(|place| place.element.name());
+        let found = names.position(|known| known == name);
+        found.ok_or_else(|| element.wrong(attribute, "there is no such body"))
+    }
+}
+
+/// Pairs in the model's order: those with planes first, so that a full list of contacts loses them last,
+/// and each family together, so that shaders take one after another.
+pub fn ordered(geoms: &[Geom], pairs: Vec<[usize; 2]>) -> Vec<[usize; 2]> {
+    let turned = |[a, b]: [usize; 2]| match rank(&geoms[a]) <= rank(&geoms[b]) {
+        true => [a, b],
+        false => [b, a],
+    };
+    let mut pairs: Vec<[usize; 2]> = pairs.into_iter().map(turned).collect();
+    pairs.sort_by_key(|pair| Family::of(pair.map(|geom| geoms[geom].shape)));
+    pairs
+}
+
+/// The shape's place in [`Shape`].
+fn rank(geom: &Geom) -> usize {
+    match geom.shape {
+        Shape::Plane => 0,
+        Shape::Sphere { .. } => 1,
+        Shape::Capsule { .. } => 2,
+        Shape::Box { .. } => 3,
+    }
+}

@@ -1,0 +1,200 @@
+//! A geom: its shape, where it is, what it weighs, how it touches.
+
+use super::element::Element;
+use super::error::Result;
+use super::frame::{Frame, from_z};
+use super::mass::{Mass, volume};
+use super::settings::Settings;
+use crate::physics::model::{Geom, Shape, Softness};
+use glam::DVec3;
+
+/// kg/m^3
+const DENSITY: f64 = 1000.0;
+
+/// In double precision.
+pub enum Form {
+    Plane,
+    Sphere { radius: f64 },
+    Capsule { radius: f64, half: f64 },
+    Box { half: DVec3 },
+}
+
+impl Form {
+    fn shape(&self) -> Shape {
+        match *self {
+            Form::Plane => Shape::Plane,
+            Form::Sphere { radius } => Shape::Sphere {
+                radius: radius as f32,
+            },
+            Form::Capsule { radius, half } => Shape::Capsule {
+                radius: radius as f32,
+                half: half as f32,
+            },
+            Form::Box { half } => Shape::Box {
+                half: half.as_vec3(),
+            },
+        }
+    }
+}
+
+/// A geom in the frame of its element's body.
+pub struct Solid {
+    pub geom: Geom,
+    pub frame: Frame,
+    pub mass: Mass,
+    pub bits: Bits,
+}
+
+/// What a geom is (`contype`), and what it touches (`conaffinity`): a bit for each kind.
+#[derive(Clone, Copy)]
+pub struct Bits {
+    kind: u32,
+    touches: u32,
+}
+
+impl Bits {
+    pub fn meet(self, other: Bits) -> bool {
+        self.kind & other.touches != 0 || other.kind & self.touches != 0
+    }
+
+    /// Whether there could be anything that it touches.
+    pub fn any(self) -> bool {
+        self.kind != 0 || self.touches != 0
+    }
+}
+
+pub fn read(element: &Element, settings: &Settings) -> Result<Solid> {
+    let (form, frame) = form(element, settings)?;
+    let mass = mass(element, &form)?;
+    let slippery = match element.number("condim")?.unwrap_or(3.0) {
+        1.0 => true,
+        3.0 => false,
+        _ => {
+            let advice = "supported are 1 (no friction) and 3 (sliding friction)";
+            return Err(element.wrong("condim", advice));
+        }
+    };
+    let friction = element.overlay("friction", [1.0, 0.005, 0.0001])?[0];
+    if friction < 0.0 {
+        return Err(element.wrong("friction", "it must not be negative"));
+    }
+    Ok(Solid {
+        geom: Geom {
+            name: element.name().to_string(),
+            body: None,
+            shape: form.shape(),
+            place: frame.place.as_vec3(),
+            turn: frame.turn.as_quat(),
+            friction: friction as f32,
+            slippery,
+            softness: softness(element, "solref", "solimp")?,
+        },
+        frame,
+        mass: Mass::solid(&form, mass).seen_from(&frame),
+        bits: Bits {
+            kind: bits(element, "contype")?,
+            touches: bits(element, "conaffinity")?,
+        },
+    })
+}
+
+fn form(element: &Element, settings: &Settings) -> Result<(Form, Frame)> {
+    let types = ["plane", "sphere", "capsule", "box"];
+    let kind = types[element.choice("type", &types)?.unwrap_or(1)];
+    let mut size = element.overlay("size", [0.0; 3])?;
+    let mut frame = Frame::read(element, settings)?;
+    if let Some(ends) = element.numbers::<6>("fromto")? {
+        let half;
+        (frame, half) = between(element, ends, &frame)?;
+        match kind {
+            "capsule" => size[1] = half,
+            "box" => size = [size[0], size[0], half],
+            _ => return Err(element.wrong("fromto", "only capsules and boxes have two ends")),
+        }
+    }
+    let used = match kind {
+        "plane" => 0,
+        "sphere" => 1,
+        "capsule" => 2,
+        _ => 3,
+    };
+    if size[..used].iter().any(|size| *size as f32 <= 0.0) {
+        let needs = format!("a {kind} has {used} positive numbers there");
+        return Err(element.wrong("size", &needs));
+    }
+    let form = match kind {
+        "plane" => Form::Plane,
+        "sphere" => Form::Sphere { radius: size[0] },
+        "capsule" => Form::Capsule {
+            radius: size[0],
+            half: size[1],
+        },
+        _ => Form::Box {
+            half: DVec3::from_array(size),
+        },
+    };
+    Ok((form, frame))
+}
+
+/// The frame halfway between two ends, z pointing to the first, and half their distance.
+fn between(element: &Element, ends: [f64; 6], frame: &Frame) -> Result<(Frame, f64)> {
+    if *frame != Frame::default() {
+        return Err(element.wrong(
+            "fromto",
+            "it says where the geom is; remove pos and the orientation",
+        ));
+    }
+    let [a, b] = [DVec3::from_slice(&ends[..3]), DVec3::from_slice(&ends[3..])];
+    let half = 0.5 * (a - b).length();
+    if half < 1e-9 {
+        return Err(element.wrong("fromto", "the two ends are the same"));
+    }
+    let frame = Frame {
+        place: 0.5 * (a + b),
+        turn: from_z((a - b).normalize()),
+    };
+    Ok((frame, half))
+}
+
+fn mass(element: &Element, form: &Form) -> Result<f64> {
+    let given = element.number("mass")?;
+    let density = element.number("density")?.unwrap_or(DENSITY);
+    let name = if given.is_some() { "mass" } else { "density" };
+    let mass = given.unwrap_or(density * volume(form));
+    match mass >= 0.0 {
+        true => Ok(mass),
+        false => Err(element.wrong(name, "it must not be negative")),
+    }
+}
+
+fn bits(element: &Element, name: &str) -> Result<u32> {
+    let number = element.number(name)?.unwrap_or(1.0);
+    match number >= 0.0 && number.fract() == 0.0 {
+        true => Ok(number as u32),
+        false => Err(element.wrong(name, "these are bits: a whole number that is not negative")),
+    }
+}
+
+/// MuJoCo's two attributes of a constraint, of geoms and of limits.
+pub fn softness(element: &Element, spring: &str, impedance: &str) -> Result<Softness> {
+    let usual = Softness::default();
+    let springs = element.overlay(spring, usual.spring.map(f64::from))?;
+    let springs = springs.map(|number| number as f32);
+    if springs.iter().any(|number| *number <= 0.0) {
+        let problem = "only a time constant and a damping ratio, both positive, are supported";
+        return Err(element.wrong(spring, problem));
+    }
+    let impedances = element.overlay(impedance, usual.impedance.map(f64::from))?;
+    let [least, most, width, middle, power] = impedances;
+    let parts = [least, most, middle]
+        .iter()
+        .all(|part| (0.0..=1.0).contains(part));
+    if !parts || width < 0.0 || power < 1.0 {
+        let problem = "expected are two impedances from 0 to 1, a width, a midpoint from 0 to 1, and a power of at least 1";
+        return Err(element.wrong(impedance, problem));
+    }
+    Ok(Softness {
+        spring: springs,
+        impedance: impedances.map(|number| number as f32),
+    })
+}

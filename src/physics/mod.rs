@@ -1,0 +1,32 @@
+//! The simulated body: articulated rigid bodies with soft contact, as MuJoCo defines them.
+//!
+//! - [`model`]: trees of bodies as flat arrays, the way everything below reads them;
+//! - [`mjcf`], [`humanoid`], [`assemble`], [`scenes`]: where models come from;
+//! - [`pose`], [`spatial`], [`invweight0`]: what the others compute with;
+//! - [`kinematics`], [`dynamics`], [`factor`], [`drive`]: from a state to accelerations without contact;
+//! - [`collision`], [`constraints`], [`pgs`]: contacts and joint limits, and the forces they take;
+//! - [`integrate`], [`simulator`]: a step of one world, from beginning to end;
+//! - [`motion_clip`], [`retarget`], [`motion_library`]: recordings in the body, and what to draw from;
+//! - [`model_table`]: the model in words, for shaders.
+
+pub mod assemble;
+pub mod collision;
+pub mod constraints;
+pub mod drive;
+pub mod dynamics;
+pub mod factor;
+pub mod humanoid;
+pub mod integrate;
+pub mod kinematics;
+pub mod invweight0;
+pub mod mjcf;
+pub mod model;
+pub mod motion_clip;
+pub mod motion_library;
+pub mod simulator;
+pub mod pose;
+pub mod retarget;
+pub mod scenes;
+pub mod spatial;
+pub mod pgs;
+pub mod model_table;

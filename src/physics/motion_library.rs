@@ -1,0 +1,170 @@
+//! Motions to begin from, and to follow: drawn by weight, at any time within.
+
+use super::model::Model;
+use super::motion_clip::BodyMotion;
+use super::retarget::{self, retarget};
+use crate::motion::clip::Clip;
+use crate::motion::error as motion;
+use crate::motion::import::{ImportOptions, import};
+use crate::motion::roles::Roles;
+use rayon::prelude::*;
+use std::path::Path;
+use std::sync::Arc;
+
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Why there is no library.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    #[error(
+        "a library needs motions, and none was given: name BVH files or folders that hold some"
+    )]
+    Empty,
+    #[error(transparent)]
+    Motion(#[from] motion::Error),
+    #[error("the clip '{clip}' cannot be put into the body: {error}")]
+    Retarget {
+        clip: String,
+        error: retarget::Error,
+    },
+    #[error("'{motion}' does not fit the model '{model}': it was made for another")]
+    Model { motion: String, model: String },
+    #[error("{weights} weights were given for {motions} motions; give one for each")]
+    Weights { weights: usize, motions: usize },
+    #[error(
+        "the weight of '{motion}' is {weight}, that of all motions {total}: give weights of zero or more, not all zero"
+    )]
+    Weight {
+        motion: String,
+        weight: f32,
+        total: f32,
+    },
+}
+
+#[derive(Clone, Debug)]
+pub struct MotionLibrary {
+    model: Arc<Model>,
+    motions: Vec<BodyMotion>,
+    /// Shares of the weights of each motion and all before it.
+    shares: Vec<f32>,
+    /// One sentence each: clips left out, T-poses dropped, unusual units.
+    pub notes: Vec<String>,
+}
+
+impl MotionLibrary {
+    /// Of BVH files and folders of them, as [`import`] reads them. Longer clips weigh more.
+    ///
+    /// # Errors
+    /// No paths, files that cannot be read, folders without recordings or with only short ones,
+    /// skeletons that cannot be put into the body.
+    pub fn load<P: AsRef<Path>>(
+        paths: &[P],
+        options: &ImportOptions,
+        model: &Arc<Model>,
+    ) -> Result<MotionLibrary> {
+        let (mut motions, mut notes) = (Vec::new(), Vec::new());
+        for path in paths {
+            let import = import(path.as_ref(), options)?;
+            motions.extend(retargeted(&import.clips, &import.roles, model)?);
+            notes.extend(import.notes);
+        }
+        let library = MotionLibrary::new(motions, model)?;
+        Ok(MotionLibrary { notes, ..library })
+    }
+
+    /// Of clips of one skeleton. Longer clips weigh more.
+    ///
+    /// # Errors
+    /// No clips, a skeleton that cannot be put into the body.
+    pub fn of(clips: &[Clip], roles: &Roles, model: &Arc<Model>) -> Result<MotionLibrary> {
+        MotionLibrary::new(retargeted(clips, roles, model)?, model)
+    }
+
+    /// Of motions of one model. Longer motions weigh more.
+    ///
+    /// # Errors
+    /// No motions, motions of another model.
+    pub fn new(motions: Vec<BodyMotion>, model: &Arc<Model>) -> Result<MotionLibrary> {
+        let frames = |motion: &BodyMotion| motion.q.len() / model.positions();
+        if let Some(motion) = motions
+            .iter()
+            .find(|motion| frames(motion) != motion.frames)
+        {
+            return Err(Error::Model {
+                motion: motion.name.clone(),
+                model: model.name.clone(),
+            });
+        }
+        let weights: Vec<f32> = motions.iter().map(BodyMotion::seconds).collect();
+        let library = MotionLibrary {
+            model: model.clone(),
+            motions,
+            shares: Vec::new(),
+            notes: Vec::new(),
+        };
+        library.weighted(&weights)
+    }
+
+    /// The same motions, drawn by other weights.
+    ///
+    /// # Errors
+    /// Weights that are negative, no numbers, all zero, or not one for each motion.
+    pub fn weighted(mut self, weights: &[f32]) -> Result<MotionLibrary> {
+        let motions = &self.motions;
+        if motions.is_empty() {
+            return Err(Error::Empty);
+        }
+        if weights.len() != motions.len() {
+            return Err(Error::Weights {
+                weights: weights.len(),
+                motions: motions.len(),
+            });
+        }
+        let total: f32 = weights.iter().sum();
+        let possible = total > 0.0 && total.is_finite();
+        let wrong = weights.iter().position(|&weight| !possible || weight < 0.0);
+        if let Some(wrong) = wrong {
+            return Err(Error::Weight {
+                motion: motions[wrong].name.clone(),
+                weight: weights[wrong],
+                total,
+            });
+        }
+        let sums = weights.iter().scan(0.0, |sum, weight| {
+            *sum += weight;
+            Some(*sum / total)
+        });
+        self.shares = sums.collect();
+        Ok(self)
+    }
+
+    pub fn motions(&self) -> &[BodyMotion] {
+        &self.motions
+    }
+
+    /// A motion by weight, and a time within it, s, all of which are as likely: of two random numbers, at least 0
+    /// and less than 1.
+    pub fn sample(&self, [share, time]: [f32; 2]) -> (usize, f32) {
+        // The last of the shares is one.
+        let motion = self.shares.partition_point(|&upto| upto <= share);
+        (motion, time * self.motions[motion].seconds())
+    }
+
+    /// Positions and velocities of a motion so many seconds after its first frame.
+    pub fn at(&self, motion: usize, time: f32) -> (Vec<f32>, Vec<f32>) {
+        self.motions[motion].at(&self.model, time)
+    }
+}
+
+fn retargeted(clips: &[Clip], roles: &Roles, model: &Model) -> Result<Vec<BodyMotion>> {
+    let motions: Vec<Result<BodyMotion>> = clips
+        .par_iter()
+        .map(|clip| {
+            retarget(clip, roles, model).map_err(|error| Error::Retarget {
+                clip: clip.name.clone(),
+                error,
+            })
+        })
+        .collect();
+    motions.into_iter().collect()
+}

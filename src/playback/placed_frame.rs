@@ -1,0 +1,66 @@
+//! A database frame, shown somewhere.
+
+use super::pose::Pose;
+use crate::motion::database::Database;
+use crate::motion::features::TRAJECTORY_OFFSETS;
+use crate::motion::character_frame::{to_local, to_world};
+use glam::{Quat, Vec3};
+
+/// A database frame and where its character frame lies in the world: everything that motion
+/// matching knows of a character.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shown {
+    pub frame: usize,
+    /// Ground point, `[x, z]`, m.
+    pub at: [f32; 2],
+    /// Unit forward direction, `[x, z]`.
+    pub heading: [f32; 2],
+}
+
+impl Shown {
+    /// The same character so many frames later (or earlier), walking on as recorded. The clip's ends
+    /// hold it back.
+    pub fn on(self, database: &Database, frames: isize) -> Shown {
+        let clip = database.clip(self.frame);
+        let last = clip.first + clip.frames - 1;
+        let frame = self.frame.saturating_add_signed(frames);
+        let frame = frame.clamp(clip.first, last);
+        let ([x, z, hx, hz], then) = (database.path[self.frame], database.path[frame]);
+        let moved = to_local([then[0] - x, then[1] - z], [hx, hz]);
+        let moved = to_world(moved, self.heading);
+        let [turned_x, turned_z] = to_world(to_local([then[2], then[3]], [hx, hz]), self.heading);
+        let length = turned_x.hypot(turned_z);
+        Shown {
+            frame,
+            at: [self.at[0] + moved[0], self.at[1] + moved[1]],
+            heading: [turned_x / length, turned_z / length],
+        }
+    }
+
+    /// Where the trajectory feature looks: x, z (m), heading x, heading z.
+    pub fn path(self, database: &Database) -> [[f32; 4]; TRAJECTORY_OFFSETS.len()] {
+        TRAJECTORY_OFFSETS.map(|ahead| {
+            let then = self.on(database, ahead as isize);
+            [then.at[0], then.at[1], then.heading[0], then.heading[1]]
+        })
+    }
+
+    /// The whole body, as recorded.
+    pub fn pose(self, database: &Database) -> Pose {
+        let [x, z, hx, hz] = database.path[self.frame];
+        let turn = Quat::from_rotation_y(yaw(self.heading) - yaw([hx, hz]));
+        let ground = Vec3::new(self.at[0], 0.0, self.at[1]);
+        let joints = database.skeleton.joints();
+        let mut rotations = database.rotations[self.frame * joints..][..joints].to_vec();
+        rotations[0] = (turn * rotations[0]).normalize();
+        Pose {
+            root: ground + turn * (database.hips[self.frame] - Vec3::new(x, 0.0, z)),
+            rotations,
+        }
+    }
+}
+
+/// The turn about the vertical that takes +z to `heading`.
+fn yaw(heading: [f32; 2]) -> f32 {
+    heading[0].atan2(heading[1])
+}

@@ -1,0 +1,167 @@
+//! A run's folder and the files in it.
+
+use super::config::Config;
+use anyhow::{Context, Result, bail};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// How a training ended, written as `summary.json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Environment steps, over all resumptions.
+    pub steps: u64,
+    /// Seconds of training, over all resumptions.
+    pub wall_s: f64,
+    pub steps_per_s: f64,
+    /// Over the evaluation episodes, at the end.
+    pub success: f64,
+    pub time_to_target_mean_s: f64,
+    /// Of the curriculum, at the end; the success is of the hardest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub level: Option<u32>,
+    /// Of the ten levels.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub levels_passed: Option<u32>,
+    pub device: String,
+    pub seed: u32,
+    /// `steps`, `time`, `success`, `interrupt` or `failure`.
+    pub stopped_by: &'static str,
+}
+
+/// A run's folder: `config.toml`, `metrics.jsonl`, TensorBoard events, `checkpoints/`, pictures,
+/// `summary.json`.
+#[derive(Clone, Debug)]
+pub struct Folder(PathBuf);
+
+impl Folder {
+    /// Makes the folder of a new run: the given one, or the next free `runs/TASK-N`.
+    pub fn create(given: Option<&Path>, task: &str) -> Result<Self> {
+        let path = match given {
+            Some(path) => path.to_path_buf(),
+            None => {
+                let free = (1..)
+                    .map(|n| Path::new("runs").join(format!("{task}-{n}")))
+                    .find(|p| !p.exists());
+                free.context("no free name under runs/")?
+            }
+        };
+        if path.join("config.toml").exists() {
+            bail!(
+                "{} already holds a run: go on with `--resume {0}`, or choose another --out",
+                path.display()
+            );
+        }
+        let folder = Folder(path);
+        std::fs::create_dir_all(folder.checkpoints())
+            .inspect_err(|_| folder.remove_empty())
+            .with_context(|| format!("cannot make the run folder {}", folder.0.display()))?;
+        Ok(folder)
+    }
+
+    /// Takes the folder away again, if nothing could be written to it.
+    pub fn remove_empty(&self) {
+        // Folders that hold something stay; the error that led here is the one to tell.
+        let _ = std::fs::remove_dir(self.checkpoints());
+        let _ = std::fs::remove_dir(&self.0);
+    }
+
+    /// An existing run.
+    pub fn open(path: &Path) -> Result<Self> {
+        if !path.is_dir() {
+            bail!(
+                "{} is not a run folder: give one that `footwork train` has made",
+                path.display()
+            );
+        }
+        let folder = Folder(path.to_path_buf());
+        if !folder.config_path().exists() {
+            bail!(
+                "{} holds no run: its config.toml is missing",
+                path.display()
+            );
+        }
+        Ok(folder)
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn config_path(&self) -> PathBuf {
+        self.file("config.toml")
+    }
+
+    fn checkpoints(&self) -> PathBuf {
+        self.file("checkpoints")
+    }
+
+    /// `last`, `best` or `steps-N`.
+    pub fn checkpoint(&self, name: &str) -> PathBuf {
+        self.checkpoints().join(format!("{name}.ckpt"))
+    }
+
+    /// The checkpoint that the run goes on from.
+    ///
+    /// # Errors
+    /// The run ended before its first.
+    pub fn last(&self) -> Result<PathBuf> {
+        let last = self.checkpoint("last");
+        if !last.exists() {
+            bail!(
+                "{} is missing: the run was stopped before it was saved; start it again with another --out, \
+                 or name one of the other checkpoints there, if there is one",
+                last.display()
+            );
+        }
+        Ok(last)
+    }
+
+    /// The periodic checkpoint at a number of steps; the names sort like the numbers.
+    pub fn checkpoint_at(&self, steps: u64) -> PathBuf {
+        self.checkpoint(&format!("steps-{steps:010}"))
+    }
+
+    /// All checkpoints, the periodic ones first and in order.
+    ///
+    /// # Errors
+    /// Their folder cannot be read.
+    pub fn checkpoint_files(&self) -> Result<Vec<PathBuf>> {
+        let folder = self.checkpoints();
+        let entries = std::fs::read_dir(&folder);
+        let entries = entries.with_context(|| format!("cannot read {}", folder.display()))?;
+        let mut files: Vec<PathBuf> = entries
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .filter(|path| path.extension().is_some_and(|ending| ending == "ckpt"))
+            .collect();
+        let periodic = |path: &PathBuf| {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            name.starts_with("steps-")
+        };
+        files.sort_by_key(|path| (!periodic(path), path.clone()));
+        Ok(files)
+    }
+
+    pub fn write_config(&self, config: &Config) -> Result<()> {
+        let text = toml::to_string(config).context("the configuration has no TOML form")?;
+        Ok(crate::container::write_whole(
+            &self.config_path(),
+            text.as_bytes(),
+        )?)
+    }
+
+    pub fn read_config(&self) -> Result<Config> {
+        Ok(Config::of_run(&self.config_path())?)
+    }
+
+    pub fn write_summary(&self, summary: &Summary) -> Result<()> {
+        let text = serde_json::to_string_pretty(summary)? + "\n";
+        Ok(crate::container::write_whole(
+            &self.file("summary.json"),
+            text.as_bytes(),
+        )?)
+    }
+}

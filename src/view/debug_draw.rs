@@ -1,0 +1,103 @@
+//! What is drawn besides the body: target, obstacles, trajectories.
+
+use super::playthrough::{Rollout, Stage};
+use super::scene::{Block, Colour, Scene};
+use crate::kernels::locomotion::locomotion_layout::termination;
+use crate::playback::Shown;
+use crate::env::locomotion::Task;
+use glam::Vec3;
+
+const TARGET: Colour = [0.06, 0.50, 0.22];
+pub const ASKED: Colour = [0.90, 0.36, 0.02];
+pub const MATCHED: Colour = [0.02, 0.34, 0.75];
+const OBSTACLE: Colour = [0.42, 0.34, 0.30];
+const HAS_COLLIDED: Colour = [0.75, 0.05, 0.03];
+/// Of obstacles, m: low enough to see the character behind them.
+const HEIGHT: f32 = 0.35;
+
+/// Everything of a rollout.
+pub fn scene(rollout: &Rollout, stage: &Stage) -> Scene {
+    let mut scene = untargeted(rollout, stage);
+    let reach = match stage.task {
+        Task::Plane(plane) => plane.reach,
+        Task::Obstacles(obstacles) => obstacles.reach,
+    };
+    target(&mut scene, rollout.target(), reach);
+    obstacles(&mut scene, rollout);
+    scene
+}
+
+/// The character and its trajectories alone.
+pub fn untargeted(rollout: &Rollout, stage: &Stage) -> Scene {
+    let mut scene = Scene::default();
+    let database = &stage.database;
+    stage
+        .body
+        .draw(&mut scene, &database.skeleton, &rollout.pose);
+    if let Some(step) = &rollout.step {
+        let from = step.from;
+        trajectory(&mut scene, from.at, &step.asked, ASKED);
+        let matched = Shown {
+            frame: step.matched,
+            ..from
+        };
+        trajectory(&mut scene, from.at, &matched.path(database), MATCHED);
+    }
+    scene
+}
+
+fn on_ground(at: [f32; 2], height: f32) -> Vec3 {
+    Vec3::new(at[0], height, at[1])
+}
+
+/// A ring of the radius within which it counts as reached, and a pole in its middle.
+fn target(scene: &mut Scene, at: [f32; 2], reach: f32) {
+    const CORNERS: usize = 40;
+    let ring: Vec<Vec3> = (0..=CORNERS)
+        .map(|corner| {
+            let angle = std::f32::consts::TAU * corner as f32 / CORNERS as f32;
+            on_ground(
+                [at[0] + reach * angle.sin(), at[1] + reach * angle.cos()],
+                0.01,
+            )
+        })
+        .collect();
+    scene.rod(&ring, 0.02, TARGET);
+    scene.rod(&[on_ground(at, 0.0), on_ground(at, 1.6)], 0.02, TARGET);
+    scene.ball(on_ground(at, 1.6), 0.1, TARGET);
+}
+
+fn obstacles(scene: &mut Scene, rollout: &Rollout) {
+    let struck = rollout
+        .step
+        .as_ref()
+        .is_some_and(|step| step.termination == termination::COLLIDED);
+    let at = rollout.shown.at;
+    for (slot, [x, z, half_x, half_z]) in rollout.obstacles().into_iter().enumerate() {
+        let hit = struck && (x - at[0]).abs() <= half_x && (z - at[1]).abs() <= half_z;
+        // Obstacles overlap: each has its own height and shade. Steps of the golden ratio never meet.
+        let own = (slot as f32 * 0.618_034).fract();
+        let height = HEIGHT * (0.8 + 0.4 * own);
+        scene.blocks.push(Block {
+            centre: [x, 0.5 * height, z],
+            half: [half_x, 0.5 * height, half_z],
+            colour: match hit {
+                true => HAS_COLLIDED,
+                false => OBSTACLE.map(|value| value * (0.75 + 0.5 * own)),
+            },
+        });
+    }
+}
+
+/// A line through the points asked for, with an arrow each for where to face.
+pub fn trajectory(scene: &mut Scene, from: [f32; 2], points: &[[f32; 4]], colour: Colour) {
+    const ABOVE: f32 = 0.025;
+    let places = std::iter::once(from).chain(points.iter().map(|p| [p[0], p[1]]));
+    let line: Vec<Vec3> = places.map(|at| on_ground(at, ABOVE)).collect();
+    scene.rod(&line, 0.015, colour);
+    for &[x, z, hx, hz] in points {
+        let base = on_ground([x, z], ABOVE);
+        scene.ball(base, 0.04, colour);
+        scene.tip(base, 0.04, base + 0.28 * Vec3::new(hx, 0.0, hz), colour);
+    }
+}

@@ -1,0 +1,506 @@
+//! The window's contents.
+
+#[cfg(feature = "gamepad")]
+use super::gamepad::Gamepad;
+use super::maps;
+use super::runners_up::{Found, nearest};
+use super::screen::{Screen, Touch};
+use super::source::{self, Source, Steered};
+use super::timeline::Timeline;
+use crate::gpu::Gpu;
+use crate::kernels::locomotion::locomotion_layout::CELL;
+use crate::motion::database::ROW_STRIDE;
+use crate::motion::features::FRAMES_PER_STEP;
+use crate::playback::Shown;
+use crate::train::controller::Controller;
+use crate::view::debug_draw::{self, MATCHED, trajectory};
+use crate::view::playthrough::{Rollout, Stage};
+use crate::view::{Camera, Scene};
+use anyhow::Result;
+use eframe::egui::{self, Key, Ui};
+use eframe::egui_wgpu::RenderState;
+
+/// Frames of motion a second.
+const RATE: f32 = 30.0;
+/// Frames played at once, at most, when drawing is slower than the motion.
+const CATCH_UP: f32 = 6.0;
+/// How quickly the camera follows, a share a frame.
+const FOLLOW: f32 = 0.2;
+/// Width of a frame's name in the search's table, points.
+const NAME: f32 = 150.0;
+/// Pieces of motion listed.
+const LISTED: usize = 8;
+
+/// A policy that can be chosen.
+pub struct Choice {
+    pub name: String,
+    /// Loads it.
+    pub load: Box<dyn Fn() -> Result<Box<dyn Controller>>>,
+}
+
+pub struct Viewer {
+    stage: Stage,
+    source: Source,
+    /// A run's checkpoints; none when only motion is looked at.
+    choices: Vec<Choice>,
+    chosen: usize,
+    timeline: Timeline,
+    /// Frame of a clip.
+    clip_frame: usize,
+    playing: bool,
+    speed: f32,
+    /// Frames that time has passed for and that are not played yet.
+    owed: f32,
+    camera: Camera,
+    follow: bool,
+    /// The obstacle being dragged, and where on it the pointer is, m.
+    grabbed: Option<(usize, [f32; 2])>,
+    search: bool,
+    found: Vec<Found>,
+    /// The query that `found` answers.
+    found_for: Option<[f32; ROW_STRIDE]>,
+    /// What went wrong last.
+    problem: Option<String>,
+    screen: Screen,
+    #[cfg(feature = "gamepad")]
+    gamepad: Option<Gamepad>,
+}
+
+impl Viewer {
+    /// Shows the last of a run's policies, or without any steered motion matching.
+    ///
+    /// # Errors
+    /// The policy cannot be loaded.
+    pub fn new(
+        gpu: &Gpu,
+        window: &RenderState,
+        stage: Stage,
+        choices: Vec<Choice>,
+    ) -> Result<Self> {
+        let source = match choices.last() {
+            Some(choice) => Source::Policy((choice.load)()?),
+            None => Source::Steered(Steered::new(stage.database.clone())),
+        };
+        let mut camera = Camera::default();
+        if stage.task.obstacles() > 0 {
+            camera.distance = 9.0;
+            camera.pitch = 0.6;
+        }
+        Ok(Viewer {
+            timeline: Timeline::new(Rollout::new(&stage, 0)),
+            chosen: choices.len().saturating_sub(1),
+            stage,
+            source,
+            choices,
+            clip_frame: 0,
+            playing: true,
+            speed: 1.0,
+            owed: 0.0,
+            camera,
+            follow: true,
+            grabbed: None,
+            search: true,
+            found: Vec::new(),
+            found_for: None,
+            problem: None,
+            screen: Screen::new(gpu, window),
+            #[cfg(feature = "gamepad")]
+            gamepad: Gamepad::open(),
+        })
+    }
+
+    pub fn show(&mut self, ui: &mut Ui) {
+        self.keys(ui);
+        self.pass_time(ui);
+        egui::Panel::bottom("transport").show(ui, |ui| self.transport(ui));
+        egui::Panel::right("why")
+            .default_size(300.0)
+            .show(ui, |ui| {
+                egui::ScrollArea::vertical().show(ui, |ui| self.why(ui));
+            });
+        let frame = egui::Frame::NONE;
+        egui::CentralPanel::default()
+            .frame(frame)
+            .show(ui, |ui| self.world(ui));
+        if self.playing {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// Where the character is shown to stand.
+    pub fn shown(&self) -> Shown {
+        match self.source {
+            Source::Clip(clip) => self.clip_shown(clip),
+            _ => self.timeline.now().shown,
+        }
+    }
+
+    pub fn timeline(&self) -> &Timeline {
+        &self.timeline
+    }
+
+    fn keys(&mut self, ui: &Ui) {
+        // Keys that a widget waits for are the widget's.
+        if ui.ctx().memory(|memory| memory.focused().is_some()) {
+            return;
+        }
+        let pressed = |key| ui.input(|input| input.key_pressed(key));
+        if pressed(Key::Space) {
+            self.playing = !self.playing;
+        }
+        if let Source::Steered(_) = self.source {
+            return self.steer(ui);
+        }
+        if pressed(Key::ArrowRight) {
+            self.step(1);
+        }
+        if pressed(Key::ArrowLeft) {
+            self.step(-1);
+        }
+    }
+
+    /// Arrow keys or WASD, or a gamepad's stick: up is away from the camera. With shift or the right
+    /// shoulder the character runs.
+    fn steer(&mut self, ui: &Ui) {
+        #[cfg(feature = "gamepad")]
+        if let Some(push) = self.gamepad.as_mut().and_then(Gamepad::push) {
+            return self.steer_to(push.right, push.away, push.run);
+        }
+        let down = |keys: [Key; 2]| {
+            let down = ui.input(|input| keys.iter().any(|&key| input.key_down(key)));
+            f32::from(u8::from(down))
+        };
+        let right = down([Key::ArrowRight, Key::D]) - down([Key::ArrowLeft, Key::A]);
+        let away = down([Key::ArrowUp, Key::W]) - down([Key::ArrowDown, Key::S]);
+        let run = ui.input(|input| input.modifiers.shift);
+        self.steer_to(right, away, run);
+    }
+
+    /// Takes effect where the next step is decided, at the end of what has been played.
+    fn steer_to(&mut self, right: f32, away: f32, run: bool) {
+        let now = self.timeline.now();
+        if now.played != FRAMES_PER_STEP || self.timeline.at() + 1 != self.timeline.len() {
+            return;
+        }
+        let push = right.hypot(away);
+        let Source::Steered(steered) = &mut self.source else {
+            return;
+        };
+        let pace = if run { source::RUN } else { source::WALK };
+        steered.ease_to(pace * push.min(1.0));
+        let at = now.shown.at;
+        let direction = match push > 0.0 {
+            true => {
+                let (sin, cos) = self.camera.yaw.sin_cos();
+                let x = right * cos - away * sin;
+                let z = -right * sin - away * cos;
+                [x / push, z / push]
+            }
+            false => now.shown.heading,
+        };
+        let target = [0, 1].map(|i| at[i] + source::TRAJECTORY_OFFSETS * direction[i]);
+        self.timeline.change().set_target(target);
+    }
+
+    fn pass_time(&mut self, ui: &Ui) {
+        if !self.playing {
+            return;
+        }
+        let passed = ui.input(|input| input.stable_dt);
+        self.owed = (self.owed + passed * RATE * self.speed).min(CATCH_UP);
+        while self.owed >= 1.0 {
+            self.owed -= 1.0;
+            self.forward();
+        }
+    }
+
+    /// A frame on.
+    fn forward(&mut self) {
+        match self.source.controller() {
+            Some(controller) => {
+                if let Err(error) = self.timeline.forward(&self.stage, controller) {
+                    self.problem = Some(format!("{error:#}"));
+                    self.playing = false;
+                }
+            }
+            None => self.clip_frame = (self.clip_frame + 1) % self.frames(),
+        }
+        if self.follow {
+            self.camera.follow(self.shown().at, FOLLOW);
+        }
+    }
+
+    /// Frames there are to go to.
+    fn frames(&self) -> usize {
+        match self.source {
+            Source::Clip(clip) => self.stage.database.clips[clip].frames,
+            _ => self.timeline.len(),
+        }
+    }
+
+    fn frame(&self) -> usize {
+        match self.source {
+            Source::Clip(_) => self.clip_frame,
+            _ => self.timeline.at(),
+        }
+    }
+
+    fn go_to(&mut self, frame: usize) {
+        self.playing = false;
+        match self.source {
+            Source::Clip(_) => self.clip_frame = frame,
+            _ => self.timeline.go_to(frame),
+        }
+        if self.follow {
+            self.camera.follow(self.shown().at, 1.0);
+        }
+    }
+
+    /// A single step, forward or back.
+    fn step(&mut self, frames: isize) {
+        self.playing = false;
+        match frames > 0 {
+            true => self.forward(),
+            false => self.go_to(self.frame().saturating_sub(1)),
+        }
+    }
+
+    fn transport(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let play = if self.playing { "Pause" } else { "Play" };
+            if ui.button(play).on_hover_text("Space").clicked() {
+                self.playing = !self.playing;
+            }
+            if ui.button("Back").on_hover_text("Left arrow").clicked() {
+                self.step(-1);
+            }
+            if ui.button("Step").on_hover_text("Right arrow").clicked() {
+                self.step(1);
+            }
+            ui.label("Speed");
+            let speed = egui::Slider::new(&mut self.speed, 0.1..=4.0).logarithmic(true);
+            ui.add(speed.max_decimals(2));
+            ui.checkbox(&mut self.follow, "Follow");
+            let mut frame = self.frame();
+            let last = self.frames() - 1;
+            ui.spacing_mut().slider_width = (ui.available_width() - 110.0).max(60.0);
+            let scrubber = egui::Slider::new(&mut frame, 0..=last)
+                .custom_formatter(|frame, _| format!("{:.2} s", frame / f64::from(RATE)));
+            if ui.add(scrubber).changed() {
+                self.go_to(frame);
+            }
+        });
+    }
+
+    fn why(&mut self, ui: &mut Ui) {
+        if let Some(problem) = &self.problem {
+            ui.colored_label(ui.visuals().error_fg_color, problem);
+        }
+        match self.choices.is_empty() {
+            true => self.choose_motion(ui),
+            false => self.choose_policy(ui),
+        }
+        if let Source::Clip(_) = self.source {
+            return;
+        }
+        ui.separator();
+        self.state(ui);
+        let count = self.stage.task.obstacles();
+        if count > 0 {
+            ui.separator();
+            ui.strong("Obstacle maps");
+            ui.small(format!("cells of {CELL} m, ahead is up"));
+            maps::show(ui, self.timeline.now().maps());
+        }
+        ui.separator();
+        ui.checkbox(&mut self.search, "Search");
+        if self.search {
+            self.show_search(ui);
+        }
+    }
+
+    fn choose_policy(&mut self, ui: &mut Ui) {
+        let mut chosen = self.chosen;
+        egui::ComboBox::from_label("Checkpoint")
+            .selected_text(&self.choices[chosen].name)
+            .show_ui(ui, |ui| {
+                for (index, choice) in self.choices.iter().enumerate() {
+                    ui.selectable_value(&mut chosen, index, &choice.name);
+                }
+            });
+        if chosen != self.chosen {
+            match (self.choices[chosen].load)() {
+                Ok(policy) => {
+                    self.source = Source::Policy(policy);
+                    self.chosen = chosen;
+                    self.problem = None;
+                    self.timeline.change();
+                }
+                Err(error) => self.problem = Some(format!("{error:#}")),
+            }
+        }
+        if ui.button("Next episode").clicked() {
+            let next = self.timeline.now().episode + 1;
+            self.timeline = Timeline::new(Rollout::new(&self.stage, next));
+        }
+        ui.small("Click the ground to move the target; drag an obstacle; drag elsewhere to turn the camera.");
+    }
+
+    fn choose_motion(&mut self, ui: &mut Ui) {
+        let steered = matches!(self.source, Source::Steered(_));
+        if ui.selectable_label(steered, "Steer").clicked() && !steered {
+            self.source = Source::Steered(Steered::new(self.stage.database.clone()));
+            self.playing = true;
+        }
+        ui.small("Arrow keys or WASD walk, with shift run.");
+        ui.separator();
+        ui.strong("Clips");
+        let chosen = match self.source {
+            Source::Clip(clip) => Some(clip),
+            _ => None,
+        };
+        let list = egui::ScrollArea::vertical()
+            .id_salt("clips")
+            .max_height(260.0);
+        list.show(ui, |ui| {
+            for index in 0..self.stage.database.clips.len() {
+                self.clip_entry(ui, index, chosen == Some(index));
+            }
+        });
+    }
+
+    fn clip_entry(&mut self, ui: &mut Ui, index: usize, chosen: bool) {
+        let clip = &self.stage.database.clips[index];
+        let seconds = clip.frames as f32 / RATE;
+        let label = format!("{} ({seconds:.0} s)", clip.name);
+        let response = ui.selectable_label(chosen, label);
+        let response = response.on_hover_text(format!("{}\n{}", clip.source, clip.licence));
+        if response.clicked() {
+            self.source = Source::Clip(index);
+            self.clip_frame = 0;
+            self.playing = true;
+            self.camera.follow(self.clip_shown(index).at, 1.0);
+        }
+    }
+
+    fn state(&self, ui: &mut Ui) {
+        let now = self.timeline.now();
+        let [x, z] = now.shown.at;
+        ui.label(format!("at {x:.2}, {z:.2} m"));
+        if let Source::Policy(_) = self.source {
+            ui.strong(format!("Episode {}", now.episode));
+            let [tx, tz] = now.target();
+            ui.label(format!("{:.2} m to the target", (tx - x).hypot(tz - z)));
+        }
+        ui.label(format!("plays {}", self.name(now.shown.frame)));
+        ui.horizontal(|ui| {
+            ui.colored_label(colour(debug_draw::ASKED), "asked for");
+            ui.colored_label(colour(MATCHED), "matched");
+        });
+    }
+
+    /// A frame, by its clip and its number there.
+    fn name(&self, frame: usize) -> String {
+        let clip = self.stage.database.clip(frame);
+        format!("{} {}", clip.name, frame - clip.first)
+    }
+
+    fn show_search(&mut self, ui: &mut Ui) {
+        let now = self.timeline.now();
+        if now.step.is_none() {
+            return;
+        }
+        let query = now.world.queries[0];
+        if self.found_for != Some(query) {
+            self.found = nearest(&self.stage.database, &query, LISTED);
+            self.found_for = Some(query);
+        }
+        egui::Grid::new("found").striped(true).show(ui, |ui| {
+            for header in ["frame", "pose", "trajectory", "sum"] {
+                ui.small(header);
+            }
+            ui.end_row();
+            for found in &self.found {
+                // Columns do not move with the names' lengths.
+                let name = egui::Label::new(self.name(found.frame)).truncate();
+                ui.add_sized([NAME, ui.spacing().interact_size.y], name);
+                for part in [found.pose, found.trajectory, found.total()] {
+                    ui.monospace(format!("{part:.2}"));
+                }
+                ui.end_row();
+            }
+        });
+        ui.small("Squared distances to what was asked, the frame played first.");
+    }
+
+    fn clip_shown(&self, clip: usize) -> Shown {
+        let frame = self.stage.database.clips[clip].first + self.clip_frame;
+        let [x, z, hx, hz] = self.stage.database.path[frame];
+        Shown {
+            frame,
+            at: [x, z],
+            heading: [hx, hz],
+        }
+    }
+
+    fn scene(&self) -> Scene {
+        let (stage, now) = (&self.stage, self.timeline.now());
+        match self.source {
+            Source::Policy(_) => debug_draw::scene(now, stage),
+            Source::Steered(_) => debug_draw::untargeted(now, stage),
+            Source::Clip(clip) => {
+                let (mut scene, shown) = (Scene::default(), self.clip_shown(clip));
+                let skeleton = &stage.database.skeleton;
+                stage
+                    .body
+                    .draw(&mut scene, skeleton, &shown.pose(&stage.database));
+                let path = shown.path(&stage.database);
+                trajectory(&mut scene, shown.at, &path, MATCHED);
+                scene
+            }
+        }
+    }
+
+    fn world(&mut self, ui: &mut Ui) {
+        let scene = self.scene();
+        let grabbed = self.grabbed.is_some();
+        let touch = self
+            .screen
+            .show(ui, &scene, None, &mut self.camera, grabbed);
+        let Source::Policy(_) = self.source else {
+            return;
+        };
+        match touch {
+            Some(Touch::Click(at)) => self.timeline.change().set_target(at),
+            Some(Touch::Press(at)) => self.grabbed = self.obstacle(at),
+            Some(Touch::Drag(at)) => {
+                if let Some((slot, [x, z])) = self.grabbed {
+                    self.timeline
+                        .change()
+                        .move_obstacle(slot, [at[0] - x, at[1] - z]);
+                }
+            }
+            Some(Touch::Release) => self.grabbed = None,
+            None => {}
+        }
+    }
+
+    /// The obstacle at a point, and where on it the point lies.
+    fn obstacle(&self, at: [f32; 2]) -> Option<(usize, [f32; 2])> {
+        let obstacles = self.timeline.now().obstacles();
+        let mut on = obstacles
+            .iter()
+            .enumerate()
+            .filter(|(_, [x, z, half_x, half_z])| {
+                (at[0] - x).abs() <= *half_x && (at[1] - z).abs() <= *half_z
+            });
+        on.next()
+            .map(|(slot, [x, z, ..])| (slot, [at[0] - x, at[1] - z]))
+    }
+}
+
+/// A linear colour as the window's.
+fn colour(linear: [f32; 3]) -> egui::Color32 {
+    let [r, g, b] = linear;
+    egui::Rgba::from_rgb(r, g, b).into()
+}

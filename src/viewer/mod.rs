@@ -1,0 +1,15 @@
+//! The window: a controller at work, and why it does what it does.
+
+#[cfg(feature = "gamepad")]
+pub mod gamepad;
+pub mod maps;
+pub mod pace;
+pub mod runners_up;
+pub mod screen;
+pub mod source;
+pub mod timeline;
+pub mod app;
+pub mod watch;
+pub mod window;
+
+pub use viewer::Viewer;

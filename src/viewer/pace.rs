@@ -1,0 +1,40 @@
+//! How often a training is drawn.
+
+use crate::gpu::Gpu;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A GPU draws this often; a software rasteriser, which takes the training's own processors, at most
+/// this share of the time.
+const OFTEN: Duration = Duration::from_millis(16);
+const SHARE: u32 = 20;
+/// Between two pictures of a software rasteriser, at least and at most.
+const SELDOM: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
+
+pub struct Pace {
+    software: bool,
+    /// How long the last picture took.
+    took: Arc<Mutex<Duration>>,
+}
+
+impl Pace {
+    pub fn new(gpu: &Gpu) -> Pace {
+        Pace {
+            software: gpu.software,
+            took: Arc::default(),
+        }
+    }
+
+    /// How long to wait for the next picture, right after one has been asked for.
+    pub fn next(&self, queue: &wgpu::Queue) -> Duration {
+        if !self.software {
+            return OFTEN;
+        }
+        let (just_reset, took) = (Instant::now(), self.took.clone());
+        queue.on_submitted_work_done(move || {
+            *took.lock().unwrap_or_else(PoisonError::into_inner) = just_reset.elapsed();
+        });
+        let took = *self.took.lock().unwrap_or_else(PoisonError::into_inner);
+        (SHARE * took).clamp(SELDOM[0], SELDOM[1])
+    }
+}

@@ -1,0 +1,65 @@
+//! What moves the character.
+
+use crate::motion::database::Database;
+use crate::train::controller::{Controller, Scripted};
+use anyhow::Result;
+use std::sync::Arc;
+
+pub enum Source {
+    /// A trained policy, on its way to targets.
+    Policy(Box<dyn Controller>),
+    /// Motion matching, steered by hand.
+    Steered(Steered),
+    /// A clip of the database as recorded, by its number.
+    Clip(usize),
+}
+
+/// m/s of a stick held all the way, and with the key for running.
+pub const WALK: f32 = 1.5;
+pub const RUN: f32 = 4.0;
+/// How far ahead of the character the point lies that it is steered to, m.
+pub const TRAJECTORY_OFFSETS: f32 = 10.0;
+/// Share of the way that the speed goes to the one asked for in a step.
+const EASE: f32 = 0.5;
+
+/// Classic motion matching: asks for a straight walk to a point that is always ahead.
+pub struct Steered {
+    database: Arc<Database>,
+    /// m/s
+    speed: f32,
+}
+
+impl Steered {
+    pub fn new(database: Arc<Database>) -> Steered {
+        Steered {
+            database,
+            speed: 0.0,
+        }
+    }
+
+    /// Takes the speed wanted, m/s.
+    pub fn ease_to(&mut self, speed: f32) {
+        self.speed += EASE * (speed - self.speed);
+    }
+}
+
+impl Controller for Steered {
+    fn act(&self, observation: &[f32], width: usize) -> Result<Vec<f32>> {
+        let scripted = Scripted {
+            database: &self.database,
+            speed: self.speed,
+        };
+        scripted.act(observation, width)
+    }
+}
+
+impl Source {
+    /// Who decides the next step; nobody does in a clip.
+    pub fn controller(&self) -> Option<&dyn Controller> {
+        match self {
+            Source::Policy(policy) => Some(&**policy),
+            Source::Steered(steered) => Some(steered),
+            Source::Clip(_) => None,
+        }
+    }
+}

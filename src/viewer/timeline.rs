@@ -1,0 +1,70 @@
+//! What has been played, to go back to.
+
+use crate::train::controller::Controller;
+use crate::view::playthrough::{Rollout, Stage};
+use anyhow::Result;
+use std::collections::VecDeque;
+
+/// Frames kept: five minutes.
+const KEPT: usize = 9000;
+
+/// Every frame of a rollout with all that decides the next: going on from an earlier one plays the
+/// same again, unless something is changed there.
+pub struct Timeline {
+    moments: VecDeque<Rollout>,
+    /// The one shown.
+    at: usize,
+}
+
+impl Timeline {
+    pub fn new(first: Rollout) -> Timeline {
+        Timeline {
+            moments: VecDeque::from([first]),
+            at: 0,
+        }
+    }
+
+    pub fn now(&self) -> &Rollout {
+        &self.moments[self.at]
+    }
+
+    /// The moment shown, to change: what came after it is forgotten.
+    pub fn change(&mut self) -> &mut Rollout {
+        self.moments.truncate(self.at + 1);
+        &mut self.moments[self.at]
+    }
+
+    pub fn len(&self) -> usize {
+        self.moments.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.moments.is_empty()
+    }
+
+    pub fn at(&self) -> usize {
+        self.at
+    }
+
+    pub fn go_to(&mut self, at: usize) {
+        self.at = at.min(self.moments.len() - 1);
+    }
+
+    /// A frame on: the recorded one, or at the end a new one.
+    ///
+    /// # Errors
+    /// The controller's.
+    pub fn forward(&mut self, stage: &Stage, controller: &dyn Controller) -> Result<()> {
+        if self.at + 1 == self.moments.len() {
+            let mut next = self.now().clone();
+            next.advance(stage, controller)?;
+            self.moments.push_back(next);
+            if self.moments.len() > KEPT {
+                self.moments.pop_front();
+                self.at -= 1;
+            }
+        }
+        self.at += 1;
+        Ok(())
+    }
+}

@@ -1,0 +1,98 @@
+//! A training, watched: all its environments at once.
+
+use super::pace::Pace;
+use super::screen::Screen;
+use crate::gpu::Gpu;
+use crate::motion::database::Database;
+use crate::train::metrics::Row;
+use crate::train::trainer::Watch;
+use crate::view::{Camera, Crowd, Scene};
+use crate::env::locomotion::Task;
+use eframe::egui::{self, Ui};
+use eframe::egui_wgpu::RenderState;
+use std::sync::{Arc, PoisonError};
+
+pub struct Crowded {
+    database: Arc<Database>,
+    task: Task,
+    envs: usize,
+    watch: Arc<Watch>,
+    /// Once the worlds are open.
+    crowd: Option<Crowd>,
+    camera: Camera,
+    screen: Screen,
+    pace: Pace,
+}
+
+impl Crowded {
+    pub fn new(
+        gpu: &Gpu,
+        window: &RenderState,
+        database: Arc<Database>,
+        task: Task,
+        envs: usize,
+        watch: Arc<Watch>,
+    ) -> Crowded {
+        Crowded {
+            database,
+            task,
+            envs,
+            watch,
+            crowd: None,
+            camera: Camera::default(),
+            screen: Screen::new(gpu, window),
+            pace: Pace::new(gpu),
+        }
+    }
+
+    pub fn show(&mut self, ui: &mut Ui) {
+        self.open();
+        egui::Panel::bottom("training").show(ui, |ui| {
+            let row = self
+                .watch
+                .row
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            ui.label(row.as_ref().map_or("the first update ...".into(), told));
+        });
+        let frame = egui::Frame::NONE;
+        egui::CentralPanel::default().frame(frame).show(ui, |ui| {
+            if self.crowd.is_none() {
+                ui.centered_and_justified(|ui| ui.label("opening the worlds ..."));
+                return;
+            }
+            let (scene, crowd) = (Scene::default(), self.crowd.as_ref());
+            self.screen.show(ui, &scene, crowd, &mut self.camera, false);
+        });
+        let next = self.pace.next(&self.screen.renderer.queue);
+        ui.ctx().request_repaint_after(next);
+    }
+
+    fn open(&mut self) {
+        let mut worlds = self
+            .watch
+            .worlds
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        if let Some(worlds) = worlds.take() {
+            let renderer = &self.screen.renderer;
+            let crowd = Crowd::new(renderer, &self.database, worlds, &self.task, self.envs);
+            self.camera.distance = 8.0 + 0.6 * crowd.side;
+            self.camera.pitch = 0.5;
+            self.crowd = Some(crowd);
+        }
+    }
+}
+
+/// An update in a line.
+fn told(row: &Row) -> String {
+    let level = row
+        .level
+        .map_or(String::new(), |level| format!("level {level}  "));
+    let success = row
+        .success
+        .map_or("-".into(), |share| format!("{:.1} %", 100.0 * share));
+    let steps = row.steps;
+    let pace = row.steps_per_s;
+    format!("{steps} steps  {level}success {success}  {pace:.0} steps/s")
+}

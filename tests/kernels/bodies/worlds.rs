@@ -1,0 +1,287 @@
+//! Batches of worlds on the host, and what their kernels are compared by.
+
+pub(super) use crate::checked;
+pub(super) use crate::inputs::{Draw, POISON, POISON_WHOLE, gpu};
+pub(super) use bytemuck::{Pod, cast_slice};
+pub(super) use footwork::physics::mjcf;
+pub(super) use footwork::physics::model::{Kind, Model};
+pub(super) use footwork::physics::simulator::{Physics, Settings, State};
+pub(super) use footwork::physics::scenes;
+pub(super) use footwork::physics::model_table::tables;
+pub(super) use footwork::gpu::kernel::groups;
+pub(super) use footwork::gpu::{Buffer, Gpu, shader};
+pub(super) use footwork::kernels::physics::smooth_dynamics::{self, POSE, Sections};
+pub(super) use footwork::kernels::physics::strided::gather;
+pub(super) use footwork::kernels::physics::make_constraints::{self, CONSTRAINT, TOUCH};
+pub(super) use footwork::kernels::physics::{contact_forces, collision, random_targets, proprioception, reset_worlds, solve_and_integrate};
+pub(super) use glam::{Quat, Vec3};
+pub(super) use std::path::Path;
+pub(super) use std::sync::Arc;
+
+/// All buffers of a batch, on the host.
+#[derive(Clone)]
+pub struct Worlds {
+    pub model: Arc<Model>,
+    pub settings: Settings,
+    pub envs: usize,
+    pub tables: Vec<u32>,
+    pub watched: Vec<u32>,
+    pub state: Vec<f32>,
+    pub targets: Vec<f32>,
+    pub pushes: Vec<f32>,
+    pub poses: Vec<f32>,
+    pub dynamics: Vec<f32>,
+    pub touches: Vec<f32>,
+    pub keys: Vec<u32>,
+    pub counts: Vec<u32>,
+    pub rows: Vec<f32>,
+    pub constraints: Vec<f32>,
+    pub warm: Vec<u32>,
+    pub forces: Vec<f32>,
+    pub tallies: Vec<u32>,
+}
+
+/// A random state: characters in any attitude near the ground, some joints past their ranges.
+pub fn random_state(model: &Model, draw: &mut Draw) -> State {
+    let mut state = State::new(model);
+    let turn = |draw: &mut Draw, most: f32| {
+        let axis = Vec3::new(draw.normal(), draw.normal(), draw.normal()).normalize();
+        let [x, y, z, w] = Quat::from_axis_angle(axis, draw.within(most)).to_array();
+        [w, x, y, z]
+    };
+    for joint in &model.joints {
+        let q = &mut state.q[joint.q..];
+        match joint.kind {
+            Kind::Free => {
+                q[0] += draw.within(0.3);
+                q[1] += draw.within(0.3);
+                q[2] = 0.5 + draw.within(0.4);
+                q[3..7].copy_from_slice(&turn(draw, 3.0));
+            }
+            Kind::Ball => q[..4].copy_from_slice(&turn(draw, 1.5)),
+            Kind::Hinge => {
+                let [low, high] = joint.range.unwrap_or([-1.0, 1.0]);
+                q[0] = 0.5 * (low + high) + draw.within(0.55 * (high - low));
+            }
+        }
+    }
+    for v in &mut state.v {
+        *v = draw.normal();
+    }
+    state
+}
+
+impl Worlds {
+    pub fn new(model: Model, envs: usize, seed: u32) -> Worlds {
+        let model = Arc::new(model);
+        let settings = Settings::training(&model);
+        let (slots, joints, bodies) = (settings.slots, model.joints.len(), model.bodies.len());
+        let quads = model.dofs.len().div_ceil(4);
+        let mut draw = Draw::new(seed);
+        let mut state = vec![0.0; (model.positions() + model.velocities()) * envs];
+        for env in 0..envs {
+            smooth_dynamics::write(
+                &model,
+                &mut state,
+                envs,
+                env,
+                &random_state(&model, &mut draw),
+            );
+        }
+        let watched: Vec<u32> = vec![2, 0, 1, 2, bodies as u32 - 1];
+        let rows = make_constraints::rows(&model, slots) * quads * 4;
+        let poison = |fields: usize| vec![POISON; fields * envs];
+        let targets = draw.normals(model.driven() * envs);
+        let mut pushes = vec![0.0; 6 * bodies * envs];
+        for push in pushes.iter_mut().step_by(7) {
+            *push = draw.within(50.0);
+        }
+        let mut warm = vec![0; solve_and_integrate::warm(slots, joints) * envs];
+        warm[..slots * envs].fill(solve_and_integrate::NO_KEY);
+        let mut worlds = Worlds {
+            tables: tables(&model, &settings).expect("it fits"),
+            forces: poison(3 * (bodies + watched.len() / 2)),
+            watched,
+            state,
+            targets,
+            pushes,
+            poses: poison(POSE * bodies),
+            dynamics: poison(Sections::of(&model).len),
+            touches: poison(TOUCH * slots),
+            keys: vec![POISON_WHOLE; slots * envs],
+            counts: vec![POISON_WHOLE; 2 * envs],
+            rows: poison(rows),
+            constraints: poison((slots + joints) * CONSTRAINT),
+            warm,
+            tallies: vec![0; contact_forces::TALLIES * envs],
+            envs,
+            settings,
+            model,
+        };
+        worlds.step();
+        // Forces to remember.
+        worlds.step();
+        // What is not written from here on must be poison.
+        worlds.touches.fill(POISON);
+        worlds.rows.fill(POISON);
+        worlds.constraints.fill(POISON);
+        worlds.articulate();
+        worlds.contact();
+        worlds.constrain();
+        worlds
+    }
+
+    pub fn physics(&self) -> Physics {
+        Physics::new(self.model.clone(), self.settings)
+    }
+
+    pub fn articulate_params(&self) -> smooth_dynamics::Params {
+        smooth_dynamics::Params {
+            envs: self.envs as u32,
+            dt: self.settings.dt,
+        }
+    }
+
+    pub fn articulate(&mut self) {
+        let params = self.articulate_params();
+        smooth_dynamics::twin(
+            &mut self.physics(),
+            &self.state,
+            &self.targets,
+            &self.pushes,
+            &mut self.poses,
+            &mut self.dynamics,
+            &params,
+        );
+    }
+
+    pub fn contact(&mut self) {
+        collision::twin(
+            &self.model,
+            &self.poses,
+            &mut self.touches,
+            &mut self.keys,
+            &mut self.counts,
+            &collision::Params {
+                envs: self.envs as u32,
+                slots: self.settings.slots as u32,
+            },
+        );
+    }
+
+    pub fn constrain_params(&self) -> make_constraints::Params {
+        make_constraints::Params {
+            envs: self.envs as u32,
+            dt: self.settings.dt,
+        }
+    }
+
+    pub fn constrain(&mut self) {
+        let params = self.constrain_params();
+        make_constraints::twin(
+            &mut self.physics(),
+            &self.state,
+            &self.dynamics,
+            &self.touches,
+            &self.keys,
+            &self.counts,
+            &mut self.rows,
+            &mut self.constraints,
+            &params,
+        );
+    }
+
+    pub fn solve_params(&self) -> solve_and_integrate::Params {
+        solve_and_integrate::Params {
+            envs: self.envs as u32,
+            dt: self.settings.dt,
+        }
+    }
+
+    pub fn solve(&mut self) {
+        let params = self.solve_params();
+        solve_and_integrate::twin(
+            &mut self.physics(),
+            &mut self.state,
+            &self.dynamics,
+            &self.rows,
+            &self.constraints,
+            &self.keys,
+            &self.counts,
+            &mut self.warm,
+            &params,
+        );
+    }
+
+    pub fn step(&mut self) {
+        self.articulate();
+        self.contact();
+        self.constrain();
+        self.solve();
+    }
+}
+
+pub fn scenes() -> [(&'static str, Model, usize); 4] {
+    [
+        ("one", scenes::one(), 65),
+        ("two", scenes::two(), 9),
+        ("punching", scenes::punching(), 9),
+        ("odd", mjcf::parse(ODD, Path::new("odd.xml")).unwrap(), 9),
+    ]
+}
+
+/// A tree that is fastened, two hinges in a body, bodies without drive or mass, contacts without friction
+/// and with another rise of impedance.
+pub const ODD: &str = r#"<mujoco model="odd">
+  <worldbody>
+    <geom name="ground" type="plane" size="0 0 1"/>
+    <body name="mast" pos="0 0 .09">
+      <joint name="yaw" axis="0 0 1"/>
+      <joint name="pitch" axis="0 1 0" range="-60 60"/>
+      <geom name="mast" type="capsule" fromto="0 0 0 .3 0 0" size=".1" condim="1"/>
+      <body name="tip" pos=".3 0 0"/>
+      <body name="arm" pos=".3 0 0">
+        <joint name="arm" axis="0 0 1" range="-90 90"/>
+        <geom name="arm" type="capsule" fromto="0 0 0 .3 0 0" size=".05" solimp=".8 .95 .01 .3 3"/>
+      </body>
+    </body>
+    <body name="ball" pos=".2 0 .5">
+      <freejoint name="ball"/>
+      <geom name="ball" size=".15" condim="1"/>
+      <body name="pendulum">
+        <joint name="pendulum" type="ball"/>
+        <geom name="pendulum" type="box" size=".05 .05 .2" pos="0 0 -.2"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator><position name="arm" joint="arm" kp="50" kv="5" forcerange="-10 10"/></actuator>
+</mujoco>"#;
+
+pub fn up<T: Pod>(gpu: &Gpu, values: &[T]) -> Buffer<T> {
+    Buffer::from_slice(gpu, values)
+}
+
+/// Compares fields `from..to` of `[fields][envs]`, an environment at a time.
+#[track_caller]
+pub fn near(
+    what: &str,
+    found: &[f32],
+    wanted: &[f32],
+    envs: usize,
+    fields: std::ops::Range<usize>,
+    bar: f32,
+) {
+    for env in 0..envs {
+        let mut pair = [vec![0.0; fields.len()], vec![0.0; fields.len()]];
+        gather(found, envs, env, fields.start, &mut pair[0]);
+        gather(wanted, envs, env, fields.start, &mut pair[1]);
+        let size = pair[1].iter().fold(1e-3f32, |most, v| most.max(v.abs()));
+        for (field, (found, wanted)) in pair[0].iter().zip(&pair[1]).enumerate() {
+            let off = (found - wanted).abs() / size;
+            assert!(
+                off <= bar,
+                "{what}, environment {env}, field {field}: {found} instead of {wanted} (of {size})"
+            );
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Oracle: the largest q.r - |r|^2 / 2 of every block in f64, of rows as the shader reads them.
+//! Bar, for `search_wide`, `search_tile` and their twin: g(28) = 28 u / (1 - 28 u) times the
+//! largest sum of absolute products, u = 2^-24 (Higham, section 3.1): what `search_exact` allows.
+
+use crate::checked::{self, Outcome};
+use crate::inputs::{Draw, POISON, close, gpu};
+use bytemuck::cast_slice;
+use footwork::gpu::shader::Shader;
+use footwork::gpu::{Buffer, shader};
+use footwork::kernels::search::{search_score_tiled, search_score_lanes};
+use footwork::motion::database::ROW_STRIDE;
+
+/// Queries, rows, rows a block and blocks an invocation or workgroup.
+pub const SHAPES: [[usize; 4]; 11] = [
+    [1, 1, 64, 32],
+    [63, 63, 64, 32],
+    [64, 64, 64, 1],
+    [65, 65, 64, 1],
+    [255, 129, 64, 2],
+    [256, 1000, 64, 3],
+    [257, 1000, 64, 32],
+    [1000, 1000, 128, 5],
+    [65, 1000, 100, 4],
+    [9, 1000, 1, 32],
+    [7, 5000, 4096, 32],
+];
+
+pub struct Case {
+    rows: Vec<[f32; ROW_STRIDE]>,
+    queries: Vec<[f32; ROW_STRIDE]>,
+    block: usize,
+    run: usize,
+}
+
+impl Case {
+    pub fn new([count, candidates, block, run]: [usize; 4], far: f32, seed: u32) -> Self {
+        let mut draw = Draw::new(seed);
+        let rows = draw.rows(candidates, 0.0);
+        let scaled = |query: [f32; ROW_STRIDE]| {
+            std::array::from_fn(|i| if i < 27 { query[i] * far } else { 1.0 })
+        };
+        Case {
+            rows: rows.iter().map(search_score_lanes::with_half_square).collect(),
+            queries: draw.rows(count, 1.0).into_iter().map(scaled).collect(),
+            block,
+            run,
+        }
+    }
+
+    fn params(&self) -> search_score_lanes::Params {
+        search_score_lanes::Params {
+            count: self.queries.len() as u32,
+            candidates: self.rows.len() as u32,
+            block: self.block as u32,
+            run: self.run as u32,
+        }
+    }
+
+    fn tile_params(&self) -> search_score_tiled::Params {
+        let search_score_lanes::Params {
+            count,
+            candidates,
+            block,
+            run,
+        } = self.params();
+        search_score_tiled::Params {
+            count,
+            candidates,
+            block,
+            run,
+        }
+    }
+
+    fn scores(&self) -> usize {
+        self.rows.len().div_ceil(self.block) * self.queries.len()
+    }
+
+    /// Some scores too many: they must stay untouched.
+    fn poison(&self) -> Vec<f32> {
+        vec![POISON; self.scores() + 9]
+    }
+
+    /// Best score and largest sum of absolute products of every block and query.
+    fn oracle(&self) -> Vec<(f64, f64)> {
+        let products = |row: &[f32; ROW_STRIDE], query: &[f32; ROW_STRIDE]| {
+            let terms = row
+                .iter()
+                .zip(query)
+                .map(|(&r, &q)| f64::from(r) * f64::from(q));
+            terms.fold((0.0, 0.0), |(sum, absolute), term: f64| {
+                (sum + term, absolute + term.abs())
+            })
+        };
+        let best = |rows: &[[f32; ROW_STRIDE]], query| {
+            let all = rows.iter().map(|row| products(row, query));
+            all.fold((f64::MIN, 0.0), |a: (f64, f64), b| {
+                (a.0.max(b.0), a.1.max(b.1))
+            })
+        };
+        let blocks = self.rows.chunks(self.block);
+        blocks
+            .flat_map(|rows| self.queries.iter().map(move |query| best(rows, query)))
+            .collect()
+    }
+
+    fn close(&self, form: &str, got: &[f32]) {
+        let oracle = self.oracle();
+        let want: Vec<f32> = oracle.iter().map(|o| o.0 as f32).collect();
+        let unit = f64::from(f32::EPSILON) / 2.0;
+        // One more rounding: the oracle's, to be compared as f32.
+        let g = 29.0 * unit / (1.0 - 29.0 * unit);
+        close(form, &got[..self.scores()], &want, |i| {
+            (g * oracle[i].1) as f32
+        });
+        assert!(got[self.scores()..].iter().all(|&s| s == POISON), "{form}");
+    }
+
+    pub fn twin_agrees(&self) {
+        let mut score = self.poison();
+        search_score_lanes::twin(&self.rows, &self.queries, &mut score, &self.params());
+        self.close("twin", &score);
+        let mut tiled = self.poison();
+        search_score_tiled::twin(&self.rows, &self.queries, &mut tiled, &self.tile_params());
+        assert_eq!(score, tiled);
+    }
+
+    /// Runs one of the two forms both ways.
+    pub fn shader_agrees(&self, tile: bool) {
+        let gpu = gpu();
+        let rows = Buffer::from_slice(&gpu, self.rows.as_flattened());
+        let queries = Buffer::from_slice(&gpu, self.queries.as_flattened());
+        let score = Buffer::from_slice(&gpu, &self.poison());
+        if tile {
+            search_score_tiled::launch(&gpu, &rows, &queries, &score, &self.tile_params());
+        } else {
+            search_score_lanes::launch(&gpu, &rows, &queries, &score, &self.params());
+        }
+        self.close("launched", &score.read(&gpu).expect("scores"));
+        let checked = if tile {
+            self.checked(&shader::SEARCH_SCORE_TILED, shader::search_score_tiled::constants::TILE)
+        } else {
+            use shader::search_score_lanes::constants::{LANES, QUERIES};
+            self.checked(&shader::SEARCH_SCORE_LANES, LANES * QUERIES)
+        };
+        self.close("checked", &checked.of(2));
+    }
+
+    fn checked(&self, shader: &'static Shader, queries: u32) -> Outcome {
+        let poison = self.poison();
+        let buffers: [&[u8]; 3] = [
+            cast_slice(&self.rows),
+            cast_slice(&self.queries),
+            cast_slice(&poison),
+        ];
+        let params = self.params();
+        let blocks = params.candidates.div_ceil(params.block);
+        let groups = [
+            params.count.div_ceil(queries),
+            blocks.div_ceil(params.run),
+            1,
+        ];
+        checked::run(shader, groups, &buffers, &params)
+    }
+}
+
+#[test]
+fn agrees_with_its_twin_and_the_oracle() {
+    for (seed, shape) in (0..).zip(SHAPES) {
+        for far in [1.0, 1e4] {
+            let case = Case::new(shape, far, seed);
+            case.twin_agrees();
+            case.shader_agrees(false);
+        }
+    }
+}

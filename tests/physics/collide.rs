@@ -1,0 +1,242 @@
+//! Contacts of pairs of shapes against those MuJoCo finds (`tests/oracle/collide.py`), and of worlds
+//! against all pairs one by one.
+
+use crate::golden;
+use footwork::physics::collision::{Contacts, MOST, Placed, Touch, Touches, collide, find};
+use footwork::physics::model::{Geom, Model, Shape};
+use footwork::physics::pose::Pose;
+use glam::{Mat3, Quat, Vec3};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+#[derive(Deserialize)]
+struct Case {
+    pair: String,
+    way: String,
+    sizes: [Vec<f32>; 2],
+    places: [Vec3; 2],
+    /// w, x, y, z
+    turns: [[f32; 4]; 2],
+    /// Ten numbers each: place, normal, tangent, distance.
+    contacts: Vec<f32>,
+}
+
+impl Case {
+    fn placed(&self) -> [Placed; 2] {
+        let kinds: Vec<&str> = self.pair.split(' ').collect();
+        std::array::from_fn(|i| {
+            let [w, x, y, z] = self.turns[i];
+            Placed {
+                shape: shape(kinds[i], &self.sizes[i]),
+                place: self.places[i],
+                turn: Mat3::from_quat(Quat::from_xyzw(x, y, z, w).normalize()),
+            }
+        })
+    }
+
+    fn wanted(&self) -> Vec<Touch> {
+        let contacts = self.contacts.chunks_exact(10);
+        let touch = |c: &[f32]| Touch {
+            place: Vec3::from_slice(c),
+            normal: Vec3::from_slice(&c[3..]),
+            tangent: Vec3::from_slice(&c[6..]),
+            distance: c[9],
+        };
+        contacts.map(touch).collect()
+    }
+}
+
+fn shape(kind: &str, size: &[f32]) -> Shape {
+    match kind {
+        "plane" => Shape::Plane,
+        "sphere" => Shape::Sphere { radius: size[0] },
+        "capsule" => Shape::Capsule {
+            radius: size[0],
+            half: size[1],
+        },
+        "box" => Shape::Box {
+            half: Vec3::from_slice(size),
+        },
+        _ => panic!("{kind}"),
+    }
+}
+
+fn radius(shape: Shape) -> f32 {
+    match shape {
+        Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
+        _ => 0.0,
+    }
+}
+
+/// How far from MuJoCo's a touch is: place, normal, tangent, distance, each as a part of its bar.
+///
+/// The bar is 1e-5, m or of a unit vector, and what the rounding of the input to single precision
+/// changes besides. A direction from one point to another has few digits where these all but meet:
+/// 1e-6 m of rounding turn it by that over their distance. The place along all but parallel axes of
+/// capsules is known to 3e-7 m over their angle. The tangent along a capsule all but upright on a
+/// plane turns by 1e-6 over its tilt.
+fn parts([first, second]: &[Placed; 2], found: &Touch, wanted: &Touch) -> [f32; 4] {
+    const BAR: f32 = 1e-5;
+    const TURNING: f32 = 1e-6;
+    const SHIFTING: f32 = 3e-7;
+    let plane = first.shape == Shape::Plane;
+    let gap = wanted.distance + radius(first.shape) + radius(second.shape);
+    let round = !plane && radius(first.shape) > 0.0;
+    let blur = if round { TURNING / gap.abs() } else { 0.0 };
+    let mut off = found.place - wanted.place;
+    let capsule = |placed: &Placed| matches!(placed.shape, Shape::Capsule { .. });
+    if capsule(first) && capsule(second) {
+        let axis = first.turn.z_axis;
+        let angle = axis.cross(second.turn.z_axis).length();
+        let along = axis.dot(off);
+        let known = if angle < 0.02 { SHIFTING / angle } else { 0.0 };
+        off -= axis * (along.signum() * along.abs().min(known));
+    }
+    let tilt = match plane && capsule(second) {
+        true => first.turn.z_axis.cross(second.turn.z_axis).length(),
+        false => 1.0,
+    };
+    [
+        off.length() / (BAR + blur),
+        (found.normal - wanted.normal).length() / (BAR + blur),
+        (found.tangent - wanted.tangent).length() / (BAR + blur + TURNING / tilt),
+        (found.distance - wanted.distance).abs() / BAR,
+    ]
+}
+
+/// The largest parts, of touches paired with MuJoCo's whatever their order.
+fn compare(case: &Case, found: &[Touch]) -> [f32; 4] {
+    let (placed, mut rest) = (case.placed(), found.to_vec());
+    let what = format!("{}, {}: {:?} {:?}", case.pair, case.way, placed, found);
+    let wanted = case.wanted();
+    assert_eq!(found.len(), wanted.len(), "{what} instead of {wanted:?}");
+    let mut most = [0.0f32; 4];
+    for wanted in &wanted {
+        let far = |touch: &Touch| touch.place.distance_squared(wanted.place);
+        let nearest = (0..rest.len()).min_by(|&a, &b| far(&rest[a]).total_cmp(&far(&rest[b])));
+        let touch = rest.swap_remove(nearest.expect("as many"));
+        let parts = parts(&placed, &touch, wanted);
+        assert!(
+            parts.iter().all(|part| *part <= 1.0),
+            "{what}: {parts:?} of what may be off"
+        );
+        most = std::array::from_fn(|i| most[i].max(parts[i]));
+    }
+    most
+}
+
+fn touches(first: &Placed, second: &Placed) -> Touches {
+    let mut touches = Touches::default();
+    collide(first, second, &mut touches);
+    touches
+}
+
+#[test]
+fn touches_as_in_mujoco() {
+    let cases: Vec<Case> = golden::json("collide.json");
+    let mut most = BTreeMap::<&str, [f32; 4]>::new();
+    for case in &cases {
+        let [first, second] = case.placed();
+        let parts = compare(case, touches(&first, &second).as_slice());
+        let most = most.entry(&case.pair).or_default();
+        *most = std::array::from_fn(|i| most[i].max(parts[i]));
+    }
+    assert_eq!(most.len(), 9);
+    for (pair, [place, normal, tangent, distance]) in most {
+        println!(
+            "{pair}: place {place:.2}, normal {normal:.2}, tangent {tangent:.2}, distance {distance:.2} of the bar"
+        );
+    }
+}
+
+/// Geoms of all shapes, half of them on one body each, and all their pairs.
+fn crowd(count: usize) -> Model {
+    let geom = |index: usize| Geom {
+        name: String::new(),
+        body: (index > count / 2).then(|| index - count / 2 - 1),
+        shape: match index * 4 / count {
+            0 => Shape::Plane,
+            1 => shape("sphere", &[0.2]),
+            2 => shape("capsule", &[0.1, 0.2]),
+            _ => shape("box", &[0.1, 0.2, 0.15]),
+        },
+        place: wave(index, 0.3),
+        turn: Quat::from_scaled_axis(wave(index + 7, 2.0)),
+        friction: 1.0,
+        slippery: false,
+        softness: Default::default(),
+    };
+    let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+    Model {
+        geoms: (0..count).map(geom).collect(),
+        pairs: pairs.collect(),
+        ..Model::default()
+    }
+}
+
+/// Numbers like random ones.
+fn wave(index: usize, size: f32) -> Vec3 {
+    let angle = index as f32;
+    size * Vec3::new(
+        (angle * 12.9).sin(),
+        (angle * 78.2).sin(),
+        (angle * 37.7).sin(),
+    )
+}
+
+fn poses(count: usize) -> Vec<Pose> {
+    let pose = |index| Pose {
+        place: wave(index + 100, 0.8),
+        turn: Quat::from_scaled_axis(wave(index + 200, 3.0)),
+    };
+    (0..count).map(pose).collect()
+}
+
+fn contacts(model: &Model, poses: &[Pose], slots: usize) -> Contacts {
+    let mut contacts = Contacts::default();
+    find(model, poses, slots, &mut contacts);
+    contacts
+}
+
+#[test]
+fn finds_what_all_pairs_have_one_by_one() {
+    let (model, poses) = (crowd(32), poses(15));
+    let placed: Vec<Placed> = model.geoms.iter().map(|geom| place(geom, &poses)).collect();
+    let (mut wanted, mut keys) = (Vec::new(), Vec::new());
+    for (pair, &[first, second]) in model.pairs.iter().enumerate() {
+        let touches = touches(&placed[first], &placed[second]);
+        wanted.extend_from_slice(touches.as_slice());
+        keys.extend(
+            touches
+                .numbers()
+                .iter()
+                .map(|number| (pair * MOST) as u32 + number),
+        );
+    }
+    let found = contacts(&model, &poses, usize::MAX);
+    assert!(wanted.len() > 100, "{}", wanted.len());
+    assert_eq!(found.touches, wanted);
+    assert_eq!(found.keys, keys);
+    assert!(keys.is_sorted_by(|a, b| a < b), "keys tell contacts apart");
+}
+
+fn place(geom: &Geom, poses: &[Pose]) -> Placed {
+    let pose = geom.pose(poses);
+    Placed {
+        shape: geom.shape,
+        place: pose.place,
+        turn: Mat3::from_quat(pose.turn),
+    }
+}
+
+#[test]
+fn counts_what_finds_no_slot() {
+    let (model, poses) = (crowd(32), poses(15));
+    let all = contacts(&model, &poses, usize::MAX);
+    for slots in [0, 1, 7, all.touches.len() - 1, all.touches.len()] {
+        let some = contacts(&model, &poses, slots);
+        assert_eq!(some.touches, all.touches[..slots]);
+        assert_eq!(some.keys, all.keys[..slots]);
+        assert_eq!(some.overflow as usize, all.touches.len() - slots);
+    }
+}
