@@ -12,7 +12,7 @@
 // advantage     [steps][envs]   in units of reward
 // target_value  [steps][envs]   in units of reward: what the critic shall learn
 
-#import locomotion_layout
+#import termination
 
 struct Params {
     envs: u32,

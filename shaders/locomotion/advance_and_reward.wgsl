@@ -67,10 +67,10 @@ fn advance_and_reward(@builtin(global_invocation_id) id: vec3u) {
         + params.clear * (exp(-hits) - params.shift);
     var end = RUNNING;
     if (state_u32[HAS_COLLIDED * envs + env] == 1u) {
-        end = COLLIDED;
+        end = FAILED;
         gained += params.crash;
     } else if (distance <= params.reach) {
-        end = REACHED;
+        end = SUCCESS;
         gained += params.bonus;
     } else if (age >= state_u32[EPISODE_LIMIT * envs + env]) {
         end = TRUNCATED;
@@ -82,8 +82,8 @@ fn advance_and_reward(@builtin(global_invocation_id) id: vec3u) {
     if (end != RUNNING) {
         state_f32[RETURNS * envs + env] += total;
         state_u32[EPISODES * envs + env] += 1u;
-        state_u32[SUCCESSES * envs + env] += u32(end == REACHED);
-        state_u32[COLLISIONS * envs + env] += u32(end == COLLIDED);
+        state_u32[SUCCESSES * envs + env] += u32(end == SUCCESS);
+        state_u32[COLLISIONS * envs + env] += u32(end == FAILED);
         state_u32[TRUNCATIONS * envs + env] += u32(end == TRUNCATED);
         state_u32[LENGTHS * envs + env] += age;
     }

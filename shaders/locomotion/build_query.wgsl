@@ -10,6 +10,8 @@
 
 struct Params {
     envs: u32,
+    // Where the first number of the actions is.
+    action_at: u32,
 }
 
 @group(0) @binding(0) var<storage, read> features: array<f32>;
@@ -28,7 +30,7 @@ fn build_query(@builtin(global_invocation_id) id: vec3u) {
         queries[out + i] = features[row + i];
     }
     for (var i = 0u; i < TRAJECTORY_DIM; i++) {
-        queries[out + POSE_DIM + i] = action[env * TRAJECTORY_DIM + i];
+        queries[out + POSE_DIM + i] = action[params.action_at + env * TRAJECTORY_DIM + i];
     }
     queries[out + FEATURE_DIM] = 1.0;
 }

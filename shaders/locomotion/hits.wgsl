@@ -13,6 +13,8 @@
 
 struct Params {
     envs: u32,
+    // Where the first number of the actions is.
+    action_at: u32,
     count: u32,
 }
 
@@ -37,7 +39,7 @@ fn hits(@builtin(global_invocation_id) id: vec3u) {
     var hit = 0u;
     for (var k = 0u; k < ASKED; k++) {
         let x = 4u * k;
-        let asked = vec2f(action[env * TRAJECTORY_DIM + x], action[env * TRAJECTORY_DIM + x + 1u])
+        let asked = vec2f(action[params.action_at + env * TRAJECTORY_DIM + x], action[params.action_at + env * TRAJECTORY_DIM + x + 1u])
             / vec2f(normal[TRAJECTORY_DIM + x], normal[TRAJECTORY_DIM + x + 1u])
             + vec2f(normal[x], normal[x + 1u]);
         let point = at + to_world(asked, heading);

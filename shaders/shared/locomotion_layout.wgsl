@@ -1,4 +1,6 @@
-// Widths and places that Rust checks against its own (src/kernels/layout.rs).
+// Widths and places that Rust checks against its own (src/kernels/locomotion/locomotion_layout.rs).
+
+#import termination
 
 const POSE_DIM = 15u;        // pose feature c
 const TRAJECTORY_DIM = 12u;  // trajectory feature t, the action
@@ -43,9 +45,3 @@ const HALF_Z = 3u;
 const BOX = 4u;
 // drift[(env * VELOCITY_DIM + axis) * count + slot], their velocities, m/s
 const VELOCITY_DIM = 2u;
-
-// How a step ends.
-const RUNNING = 0u;
-const REACHED = 1u;
-const TRUNCATED = 2u; // out of steps
-const COLLIDED = 3u;

@@ -12,22 +12,11 @@ pub mod stats;
 
 use crate::container::{Section, SectionError};
 use crate::gpu::Array;
+pub use crate::kernels::termination;
 use anyhow::Result;
 pub use batch::EnvBatch;
 pub use spec::{EnvSpec, ObservationSpec};
 pub use stats::Stats;
-
-/// How a step ends for an agent. Environments may add terminations of their own behind these.
-pub mod termination {
-    /// The episode goes on.
-    pub const RUNNING: u32 = 0;
-    /// The task is done.
-    pub const SUCCESS: u32 = 1;
-    /// Out of steps.
-    pub const TRUNCATED: u32 = 2;
-    /// The task has failed: a collision, a fall.
-    pub const FAILED: u32 = 3;
-}
 
 /// The columns of a rollout that a step fills.
 pub struct Transition<'a> {
@@ -53,8 +42,8 @@ pub trait VecEnv: Send {
     /// Plays one step of all environments. `action` holds `[rows][action]` from the index `at` on.
     fn step(&mut self, action: &Array, at: usize, out: Transition);
 
-    /// Names of the sums that [`VecEnv::stats`] writes: first `episodes`, `successes`, `steps` and
-    /// `returns` of the episodes that ended, then what is the environment's own.
+    /// Names of the sums that [`VecEnv::stats`] writes: `episodes`, `successes`, `steps` and `returns`
+    /// of the episodes that ended, and what is the environment's own.
     fn stat_names(&self) -> &'static [&'static str];
 
     /// Writes the sums over all episodes that ended since the last call to `out`, in the order of

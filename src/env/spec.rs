@@ -49,4 +49,9 @@ impl EnvSpec {
     pub fn final_steps(&self, length: usize) -> usize {
         if self.bootstraps_often { length } else { 1 }
     }
+
+    /// The first row that the step `step` of a rollout writes final observations to.
+    pub fn final_row(&self, step: usize) -> usize {
+        if self.bootstraps_often { step * self.rows() } else { 0 }
+    }
 }

@@ -6,7 +6,8 @@
 //! - [`physics`]: a step of the articulated bodies;
 //! - [`learn`]: sampling, advantages, and the gradient step of dense networks;
 //! - [`bench`]: what a device could do at most;
-//! - [`rng`]: counter-based random numbers that shaders and twins share.
+//! - [`rng`]: counter-based random numbers that shaders and twins share;
+//! - [`termination`]: how a step ends.
 
 pub mod bench;
 pub mod learn;
@@ -14,3 +15,4 @@ pub mod locomotion;
 pub mod physics;
 pub mod rng;
 pub mod search;
+pub mod termination;

@@ -1,7 +1,8 @@
 //! Judges a controller on a fixed set of episodes, each run to its end.
 
 use super::controller::Controller;
-use crate::kernels::locomotion::locomotion_layout::{termination, state_f32};
+use crate::kernels::locomotion::locomotion_layout::{state_f32};
+use crate::kernels::termination;
 use crate::kernels::rng::{random4, uniform01};
 use crate::motion::RATE;
 use crate::motion::database::Database;
@@ -162,15 +163,15 @@ impl Found {
         let near = distance(world, &world.state_f32, env) <= LOITER_DISTANCE;
         episode.near = if near { episode.near + 1 } else { 0 };
         let termination = world.termination[env];
-        episode.loiters |= episode.near > LOITER_STEPS && termination != termination::REACHED;
+        episode.loiters |= episode.near > LOITER_STEPS && termination != termination::SUCCESS;
         if termination == termination::RUNNING {
             return;
         }
         self.steps += f64::from(step);
         self.loiterers += usize::from(episode.loiters);
-        self.collisions += usize::from(termination == termination::COLLIDED);
+        self.collisions += usize::from(termination == termination::FAILED);
         episode.phase = Phase::Done;
-        if termination == termination::REACHED {
+        if termination == termination::SUCCESS {
             let path = world.field(state_f32::TRAVELLED, env);
             let straight = world.field(state_f32::X, env).hypot(world.field(state_f32::Z, env));
             self.times.push(f64::from(step as f32 * SECONDS_A_STEP));

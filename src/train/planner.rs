@@ -3,7 +3,8 @@
 //! reach bounds from below what a policy might.
 
 use super::evaluate::episodes;
-use crate::kernels::locomotion::locomotion_layout::{termination, state_f32};
+use crate::kernels::locomotion::locomotion_layout::{state_f32};
+use crate::kernels::termination;
 use crate::motion::RATE;
 use crate::motion::database::Database;
 use crate::motion::features::{TRAJECTORY_OFFSETS, POSE_DIM, TRAJECTORY_DIM};
@@ -67,7 +68,7 @@ fn explore(mut world: CpuLocomotion, database: &Database) -> usize {
         let actions = actions(&world, database);
         world.play(&actions);
         for (env, &episode) in episode.iter().enumerate() {
-            reached[episode] |= world.termination[env] == termination::REACHED;
+            reached[episode] |= world.termination[env] == termination::SUCCESS;
         }
         let chosen: Vec<usize> = (0..count)
             .filter(|&one| !reached[one])

@@ -2,7 +2,8 @@
 
 use super::controller::Controller;
 use super::evaluate::{advance, episodes};
-use crate::kernels::locomotion::locomotion_layout::{termination, state_f32, state_u32};
+use crate::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
+use crate::kernels::termination;
 use crate::motion::database::Database;
 use crate::motion::features::FRAMES_PER_STEP;
 use crate::playback::Shown;

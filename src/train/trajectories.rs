@@ -2,7 +2,8 @@
 
 use super::controller::Controller;
 use super::evaluate::{SECONDS_A_STEP, advance, episodes};
-use crate::kernels::locomotion::locomotion_layout::{MAPS, boxes, termination, state_f32};
+use crate::kernels::locomotion::locomotion_layout::{MAPS, boxes, state_f32};
+use crate::kernels::termination;
 use crate::kernels::locomotion::rasterize_maps::cell;
 use crate::motion::database::Database;
 use crate::motion::character_frame::to_local;
@@ -56,7 +57,7 @@ pub fn walks(
             .filter(|(_, walk)| !walk.reached);
         for (env, walk) in under_way {
             walk.points.push(at(&world, env, state_f32::X, state_f32::Z));
-            walk.reached = world.termination[env] == termination::REACHED;
+            walk.reached = world.termination[env] == termination::SUCCESS;
         }
         if walks.iter().all(|walk| walk.reached) {
             break;
@@ -113,8 +114,8 @@ fn obstacle_walk(
         points,
         target: place(&world, state_f32::TARGET_X, state_f32::TARGET_Z),
         end: match world.termination[0] {
-            termination::REACHED => End::Reached,
-            termination::COLLIDED => End::Collided,
+            termination::SUCCESS => End::Reached,
+            termination::FAILED => End::Collided,
             _ => End::UnderWay,
         },
         seen: moment,

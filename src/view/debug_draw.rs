@@ -2,7 +2,7 @@
 
 use super::playthrough::{Rollout, Stage};
 use super::scene::{Block, Colour, Scene};
-use crate::kernels::locomotion::locomotion_layout::termination;
+use crate::kernels::termination;
 use crate::playback::Shown;
 use crate::env::locomotion::Task;
 use glam::Vec3;
@@ -71,7 +71,7 @@ fn obstacles(scene: &mut Scene, rollout: &Rollout) {
     let struck = rollout
         .step
         .as_ref()
-        .is_some_and(|step| step.termination == termination::COLLIDED);
+        .is_some_and(|step| step.termination == termination::FAILED);
     let at = rollout.shown.at;
     for (slot, [x, z, half_x, half_z]) in rollout.obstacles().into_iter().enumerate() {
         let hit = struck && (x - at[0]).abs() <= half_x && (z - at[1]).abs() <= half_z;

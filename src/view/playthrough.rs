@@ -1,7 +1,8 @@
 //! One character under a controller, frame by frame, for somebody to watch.
 
 use super::capsule_rig::Body;
-use crate::kernels::locomotion::locomotion_layout::{boxes, termination, state_f32, state_u32};
+use crate::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
+use crate::kernels::termination;
 use crate::motion::database::Database;
 use crate::motion::features::{TRAJECTORY_OFFSETS, FRAMES_PER_STEP, POSE_DIM, TRAJECTORY_DIM};
 use crate::motion::character_frame::to_world;
@@ -98,11 +99,11 @@ impl Rollout {
     pub fn advance(&mut self, stage: &Stage, controller: &dyn Controller) -> Result<()> {
         if self.played == FRAMES_PER_STEP {
             match self.step.as_ref().map_or(termination::RUNNING, |step| step.termination) {
-                termination::COLLIDED => {
+                termination::FAILED => {
                     *self = Rollout::new(stage, self.episode + 1);
                     return Ok(());
                 }
-                termination::REACHED => send_elsewhere(&mut self.world, 0),
+                termination::SUCCESS => send_elsewhere(&mut self.world, 0),
                 _ => {}
             }
             self.decide(stage, controller)?;
@@ -156,7 +157,7 @@ impl Rollout {
         }
         // An arrival on the way would draw another.
         if let Some(step) = &mut self.step
-            && step.termination == termination::REACHED
+            && step.termination == termination::SUCCESS
         {
             step.termination = termination::RUNNING;
         }

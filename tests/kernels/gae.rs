@@ -8,7 +8,7 @@ use bytemuck::cast_slice;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
 use footwork::kernels::learn::gae;
-use footwork::kernels::locomotion::locomotion_layout::termination;
+use footwork::kernels::termination;
 
 struct Case {
     reward: Vec<f32>,
@@ -29,7 +29,7 @@ impl Case {
         let mut draw = Draw::new(seed);
         let samples = envs * steps;
         let termination: Vec<u32> = (0..samples).map(|at| termination(at / envs, at % envs)).collect();
-        let arrival = |&termination: &u32| if termination == termination::REACHED { 1000.0 } else { 0.0 };
+        let arrival = |&termination: &u32| if termination == termination::SUCCESS { 1000.0 } else { 0.0 };
         Case {
             reward: termination.iter().map(|e| arrival(e) + draw.normal()).collect(),
             value: draw.normals(samples),
@@ -211,8 +211,8 @@ impl Case {
 fn mixed(step: usize, env: usize) -> u32 {
     match (step * 31 + env * 17) % 11 {
         _ if step == env % 13 => termination::TRUNCATED,
-        0 => termination::REACHED,
-        1 => termination::COLLIDED,
+        0 => termination::SUCCESS,
+        1 => termination::FAILED,
         _ => termination::RUNNING,
     }
 }
@@ -246,7 +246,7 @@ fn agrees_for_every_kind_of_discount() {
 
 #[test]
 fn agrees_where_all_or_none_ends() {
-    for termination in [termination::RUNNING, termination::REACHED] {
+    for termination in [termination::RUNNING, termination::SUCCESS] {
         Case::new(65, 16, 6, |_, _| termination).agrees();
     }
     Case::new(65, 16, 6, |step, _| {
@@ -261,7 +261,7 @@ fn agrees_where_all_or_none_ends() {
         if step == 0 {
             termination::TRUNCATED
         } else {
-            termination::REACHED
+            termination::SUCCESS
         }
     })
     .agrees();
@@ -293,8 +293,8 @@ fn agrees_for_every_set_of_ends_after_which_value_goes_on() {
 /// One arrival valued as if the walk went on, by hand: reward 10, then half of the value 4.
 #[test]
 fn an_arrival_that_goes_on_is_worth_its_value() {
-    for (bootstrap, worth) in [(1 << termination::TRUNCATED, 10.0), (1 << termination::REACHED, 12.0)] {
-        let mut case = Case::new(1, 1, 9, |_, _| termination::REACHED);
+    for (bootstrap, worth) in [(1 << termination::TRUNCATED, 10.0), (1 << termination::SUCCESS, 12.0)] {
+        let mut case = Case::new(1, 1, 9, |_, _| termination::SUCCESS);
         (case.reward[0], case.value[0], case.final_value[0]) = (10.0, 3.0, 4.0);
         case.scale = [0.0, 1.0];
         (case.params.gamma, case.params.bootstrap) = (0.5, bootstrap);

@@ -6,7 +6,8 @@ use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, gpu, same, within_terms};
 use bytemuck::cast_slice;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::locomotion::locomotion_layout::{CELLS, BASE_OBS_DIM, TARGET_SCALE, MAP_WORDS, MAPS, MAP_OBS_DIM, termination, state_f32};
+use footwork::kernels::locomotion::locomotion_layout::{CELLS, BASE_OBS_DIM, TARGET_SCALE, MAP_WORDS, MAPS, MAP_OBS_DIM, state_f32};
+use footwork::kernels::termination;
 use footwork::kernels::locomotion::observe;
 use footwork::kernels::locomotion::rasterize_maps::cell;
 use footwork::motion::database::ROW_STRIDE;
@@ -157,7 +158,7 @@ fn agrees_with_its_twin_on_random_states() {
 
 #[test]
 fn writes_only_the_rows_that_ended_as_asked() {
-    for only in [termination::REACHED, termination::TRUNCATED] {
+    for only in [termination::SUCCESS, termination::TRUNCATED] {
         let case = Case::random(130, 1, 1 << only);
         let seen = case.agrees();
         for (row, &termination) in seen
@@ -168,7 +169,7 @@ fn writes_only_the_rows_that_ended_as_asked() {
         }
     }
     let mut case = Case::random(65, 1, 1 << termination::TRUNCATED);
-    case.termination.fill(termination::REACHED);
+    case.termination.fill(termination::SUCCESS);
     assert!(case.agrees().iter().all(|&o| o == POISON));
     case.termination.fill(termination::TRUNCATED);
     assert!(case.agrees()[..65 * BASE_OBS_DIM].iter().all(|&o| o != POISON));

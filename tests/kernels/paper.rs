@@ -2,7 +2,8 @@
 //! have f32 and unit vectors. Bar: 1e-5 m, 1e-5 rad, rewards within 1e-5 of themselves.
 
 use crate::inputs::Draw;
-use footwork::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, termination, state_f32, state_u32};
+use footwork::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, state_f32, state_u32};
+use footwork::kernels::termination;
 use footwork::kernels::locomotion::{observe, advance_and_reward};
 use footwork::motion::database::{Database, MIN_FUTURE_FRAMES};
 use footwork::motion::features::{FRAMES_PER_STEP, POSE_DIM};
@@ -159,7 +160,7 @@ fn rewards_and_ends_are_those_of_equation_3() {
             continue;
         }
         let (bonus, expected) = match (g < 0.5, age + 1 >= 200) {
-            (true, _) => (1000.0, termination::REACHED),
+            (true, _) => (1000.0, termination::SUCCESS),
             (false, true) => (0.0, termination::TRUNCATED),
             (false, false) => (0.0, termination::RUNNING),
         };

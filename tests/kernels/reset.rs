@@ -8,7 +8,8 @@ use crate::inputs::{Draw, POISON, POISON_WHOLE, SEEDS, SIZES, close, gpu, same, 
 use bytemuck::cast_slice;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::locomotion::locomotion_layout::{boxes, termination, state_f32, state_u32};
+use footwork::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
+use footwork::kernels::termination;
 use footwork::kernels::locomotion::reset;
 
 /// Numbers past the last box.
@@ -31,7 +32,7 @@ impl Case {
             .collect();
         let offset = draw.below(3) * envs;
         // Ends of other steps would start episodes anew if they were read.
-        let mut ends = vec![termination::REACHED; offset + envs + 5];
+        let mut ends = vec![termination::SUCCESS; offset + envs + 5];
         for env in 0..envs {
             ends[offset + env] = termination(env);
         }
@@ -193,7 +194,7 @@ fn agrees_at_the_edges_of_its_parameters() {
 
 #[test]
 fn a_square_within_reach_leaves_the_corner() {
-    let mut case = Case::new(65, 3, |_| termination::REACHED);
+    let mut case = Case::new(65, 3, |_| termination::SUCCESS);
     (case.params.half_side, case.params.reach) = (0.36, 0.51);
     let (state_f32, _) = case.agrees();
     assert_eq!(
@@ -215,7 +216,7 @@ fn one_candidate_and_none_ended() {
 #[test]
 fn starts_and_targets_are_uniform() {
     const ENVS: usize = 40_000;
-    let mut case = Case::new(ENVS, 11, |_| termination::REACHED);
+    let mut case = Case::new(ENVS, 11, |_| termination::SUCCESS);
     case.candidates = (0..100).collect();
     (case.params.candidates, case.params.initial_age_jitter) = (100, 200);
     let (state_f32, state_u32) = case.twin();
@@ -263,7 +264,7 @@ fn targets_lie_in_no_obstacle_if_asked() {
     for count in COUNTS {
         for envs in SIZES {
             let ground = Ground::new(envs, count, 5, false);
-            let mut case = Case::new(envs, 5, |_| termination::REACHED).among(&ground);
+            let mut case = Case::new(envs, 5, |_| termination::SUCCESS).among(&ground);
             let (state_f32, _) = case.agrees();
             case.params.clear = 0;
             let (anywhere, _) = case.agrees();
@@ -292,7 +293,7 @@ fn where_all_is_covered_the_corner_remains() {
         let half = (env * boxes::FIELDS + boxes::HALF_X) * 400;
         ground.boxes[half..half + 800].fill(64.0);
     }
-    let (state_f32, _) = Case::new(65, 6, |_| termination::COLLIDED).among(&ground).agrees();
+    let (state_f32, _) = Case::new(65, 6, |_| termination::FAILED).among(&ground).agrees();
     let targets = state_f32::TARGET_X * 65..(state_f32::TARGET_Z + 1) * 65;
     assert_eq!(state_f32[targets], [5.0; 130]);
 }
@@ -308,7 +309,7 @@ fn the_last_of_two_thousand_boxes_keeps_targets_out() {
         ground.boxes[half + MOST - 1] = 4.5;
         ground.boxes[half + 2 * MOST - 1] = 4.5;
     }
-    let (state_f32, _) = Case::new(65, 7, |_| termination::COLLIDED).among(&ground).agrees();
+    let (state_f32, _) = Case::new(65, 7, |_| termination::FAILED).among(&ground).agrees();
     for env in 0..65 {
         let away = [state_f32::TARGET_X, state_f32::TARGET_Z].map(|field| state_f32[field * 65 + env].abs());
         assert!(away[0].max(away[1]) > 4.5, "environment {env}");

@@ -3,7 +3,8 @@
 
 use crate::inputs::Draw;
 use crate::paper::DATABASE;
-use footwork::kernels::locomotion::locomotion_layout::{termination, state_f32, state_u32};
+use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
+use footwork::kernels::termination;
 use footwork::kernels::locomotion::advance_and_reward;
 use footwork::env::locomotion::kernel_params::KernelParams;
 use footwork::env::locomotion::task::{Arrival, Reward};
@@ -80,8 +81,8 @@ impl Worlds {
     fn expected(&self, env: usize, distance: f64) -> u32 {
         let out_of_time = self.count(state_u32::EPISODE_STEP, env) >= self.count(state_u32::EPISODE_LIMIT, env);
         match (self.count(state_u32::HAS_COLLIDED, env) == 1, distance <= 0.5) {
-            (true, _) => termination::COLLIDED,
-            (false, true) => termination::REACHED,
+            (true, _) => termination::FAILED,
+            (false, true) => termination::SUCCESS,
             _ if out_of_time => termination::TRUNCATED,
             _ => termination::RUNNING,
         }
@@ -112,8 +113,8 @@ impl Worlds {
                 + progress * (before - after)
                 + clear * ((-hits).exp() - shift);
             reward += match termination {
-                termination::REACHED => bonus,
-                termination::COLLIDED => crash,
+                termination::SUCCESS => bonus,
+                termination::FAILED => crash,
                 _ => 0.0,
             };
             let got = f64::from(self.reward[env]);
@@ -133,8 +134,8 @@ impl Worlds {
         let of = |end: u32| u32::from(termination == end);
         assert_eq!(gained(state_u32::EPISODE_STEP), 1);
         assert_eq!(gained(state_u32::EPISODES), 1 - of(termination::RUNNING));
-        assert_eq!(gained(state_u32::SUCCESSES), of(termination::REACHED));
-        assert_eq!(gained(state_u32::COLLISIONS), of(termination::COLLIDED));
+        assert_eq!(gained(state_u32::SUCCESSES), of(termination::SUCCESS));
+        assert_eq!(gained(state_u32::COLLISIONS), of(termination::FAILED));
         assert_eq!(gained(state_u32::TRUNCATIONS), of(termination::TRUNCATED));
         let length = match termination {
             termination::RUNNING => 0,
@@ -219,7 +220,7 @@ fn the_papers_reward_is_equation_4_and_its_bonus() {
         let distance = Worlds::distance(&worlds.state_f32, env);
         let hits = f64::from(worlds.count(state_u32::HITS, env));
         let bonus = match worlds.termination[env] {
-            termination::REACHED => 10.0,
+            termination::SUCCESS => 10.0,
             _ => 0.0,
         };
         let reward = (-distance).exp() + (-hits).exp() + bonus;

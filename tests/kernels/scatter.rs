@@ -6,7 +6,8 @@ use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, gpu, same, within_terms};
 use bytemuck::cast_slice;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, boxes, termination};
+use footwork::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, boxes};
+use footwork::kernels::termination;
 use footwork::kernels::locomotion::spawn_obstacles;
 
 struct Case {
@@ -22,7 +23,7 @@ impl Case {
         let mut draw = Draw::new(seed);
         let offset = draw.below(3) * envs;
         // Ends of other steps would draw anew if they were read.
-        let mut ends = vec![termination::REACHED; offset + envs + 5];
+        let mut ends = vec![termination::SUCCESS; offset + envs + 5];
         for env in 0..envs {
             ends[offset + env] = termination(env);
         }
@@ -182,7 +183,7 @@ fn agrees_at_the_edges_of_its_parameters() {
 
 #[test]
 fn boxes_that_find_no_place_stand_in_the_corner() {
-    let mut case = Case::new(65, 10, 3, |_| termination::COLLIDED);
+    let mut case = Case::new(65, 10, 3, |_| termination::FAILED);
     (case.params.square, case.params.margin) = (2.0, 2.0);
     for obstacle in case.agrees() {
         assert_eq!(obstacle.centre, [2.0; 2]);

@@ -10,7 +10,8 @@ use crate::inputs::{
 use bytemuck::cast_slice;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::locomotion::locomotion_layout::{termination, state_f32, state_u32};
+use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
+use footwork::kernels::termination;
 use footwork::kernels::locomotion::advance_and_reward;
 use footwork::motion::database::RootMotion;
 
@@ -264,7 +265,7 @@ fn a_collision_comes_before_an_arrival_and_that_before_the_last_step() {
         case.state.state_u32[state_u32::EPISODE_LIMIT * 80 + env] = if env & 4 == 4 { 10 } else { 11 };
     }
     let after = case.agrees();
-    let (reached, struck) = ((termination::REACHED, 10.0), (termination::COLLIDED, -5.0));
+    let (reached, struck) = ((termination::SUCCESS, 10.0), (termination::FAILED, -5.0));
     let (running, truncated) = ((termination::RUNNING, 0.0), (termination::TRUNCATED, 0.0));
     let expected = [
         running, reached, struck, struck, truncated, reached, struck, struck,
@@ -314,7 +315,7 @@ fn ends_exactly_at_reach_and_at_the_last_step() {
     for env in 0..25 {
         // Arrival counts first, also at the last step.
         let expected = match (env % 5, env / 5) {
-            (0 | 1, _) => termination::REACHED,
+            (0 | 1, _) => termination::SUCCESS,
             (_, 2..) => termination::TRUNCATED,
             _ => termination::RUNNING,
         };
@@ -351,11 +352,11 @@ fn survives_degenerate_headings() {
 #[test]
 fn all_end_or_none_ends() {
     let mut case = standing(130);
-    assert!(case.agrees().termination[case.params.offset as usize..][..130] != [termination::REACHED; 130]);
+    assert!(case.agrees().termination[case.params.offset as usize..][..130] != [termination::SUCCESS; 130]);
     case.params.reach = 5.0;
     assert_eq!(
         case.agrees().termination[case.params.offset as usize..][..130],
-        [termination::REACHED; 130]
+        [termination::SUCCESS; 130]
     );
     case.params.reach = 4.9;
     case.fill(state_u32::EPISODE_LIMIT, 0);

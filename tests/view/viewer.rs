@@ -5,7 +5,7 @@ use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
-use footwork::kernels::locomotion::locomotion_layout::termination;
+use footwork::kernels::termination;
 use footwork::motion::features::FRAMES_PER_STEP;
 use footwork::viewer::Viewer;
 use footwork::viewer::app::Choice;
@@ -221,7 +221,7 @@ fn a_target_set_on_arrival_stays() {
     rollout.set_target(rollout.shown.at);
     rollout.advance(&stage, &Walker).unwrap();
     let termination = rollout.step.as_ref().map(|step| step.termination);
-    assert_eq!(termination, Some(termination::REACHED));
+    assert_eq!(termination, Some(termination::SUCCESS));
     rollout.set_target([40.0, 30.0]);
     for _ in 0..=FRAMES_PER_STEP {
         rollout.advance(&stage, &Walker).unwrap();

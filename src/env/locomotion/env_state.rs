@@ -1,62 +1,67 @@
-//! The state of worlds on the host.
+//! The state of environments on the host.
 
-use crate::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
-use serde::{Deserialize, Serialize};
-use std::ops::Range;
+use crate::container::{Section, SectionError};
+use crate::kernels::locomotion::locomotion_layout::{
+    MAP_WORDS, VELOCITY_DIM, boxes, state_f32, state_u32,
+};
 
-/// Everything worlds need to go on as if never stopped.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// Everything that environments need to go on as if they had never stopped.
+#[derive(Clone, Debug, PartialEq)]
 pub struct EnvState {
     /// Steps so far: the counter of the random numbers.
     pub step_counter: u32,
     pub level: u32,
     /// `[state_f32::FIELDS][envs]`
-    #[serde(skip)]
     pub state_f32: Vec<f32>,
     /// `[state_u32::FIELDS][envs]`
-    #[serde(skip)]
     pub state_u32: Vec<u32>,
     /// `[envs][boxes::FIELDS][count]`
-    #[serde(skip)]
     pub boxes: Vec<f32>,
     /// `[envs][VELOCITY_DIM][count]`
-    #[serde(skip)]
     pub obstacle_velocity: Vec<f32>,
     /// `[envs][MAP_WORDS]`
-    #[serde(skip)]
     pub maps: Vec<u32>,
 }
 
 impl EnvState {
-    fn envs(&self) -> usize {
-        self.state_f32.len() / state_f32::FIELDS
+    /// Writes it into a section of a checkpoint.
+    pub fn save(&self, to: &mut Section) {
+        to.put("step_counter", self.step_counter);
+        to.put("level", self.level);
+        to.put_array("state_f32", &self.state_f32);
+        to.put_array("state_u32", &self.state_u32);
+        to.put_array("boxes", &self.boxes);
+        to.put_array("obstacle_velocity", &self.obstacle_velocity);
+        to.put_array("maps", &self.maps);
     }
 
-    /// Of the environments `envs` alone.
-    pub fn part(&self, envs: Range<usize>) -> EnvState {
-        let all = self.envs();
-        let envs: Vec<usize> = envs.collect();
-        EnvState {
-            step_counter: self.step_counter,
-            level: self.level,
-            state_f32: gather(&self.state_f32, all, 1, &envs),
-            state_u32: gather(&self.state_u32, all, 1, &envs),
-            boxes: gather(&self.boxes, all, self.boxes.len() / all, &envs),
-            obstacle_velocity: gather(&self.obstacle_velocity, all, self.obstacle_velocity.len() / all, &envs),
-            maps: gather(&self.maps, all, self.maps.len() / all, &envs),
-        }
-    }
-
-    /// Of all environments, from the parts they were cut into.
-    pub fn join(parts: &[EnvState]) -> EnvState {
-        EnvState {
-            step_counter: parts[0].step_counter,
-            level: parts[0].level,
-            state_f32: fields(state_f32::FIELDS, parts, |part| &part.state_f32),
-            state_u32: fields(state_u32::FIELDS, parts, |part| &part.state_u32),
-            boxes: fields(1, parts, |part| &part.boxes),
-            obstacle_velocity: fields(1, parts, |part| &part.obstacle_velocity),
-            maps: fields(1, parts, |part| &part.maps),
+    /// Reads the state of `envs` environments with `count` obstacles each, which show frames of a
+    /// database of `frames`.
+    ///
+    /// # Errors
+    /// It is the state of others, or damaged.
+    pub fn load(
+        from: &mut Section,
+        envs: usize,
+        count: usize,
+        frames: usize,
+    ) -> Result<Self, SectionError> {
+        let state = EnvState {
+            step_counter: from.get("step_counter")?,
+            level: from.get("level")?,
+            state_f32: from.take_finite("state_f32", state_f32::FIELDS * envs)?,
+            state_u32: from.take_array("state_u32", state_u32::FIELDS * envs)?,
+            boxes: from.take_finite("boxes", envs * boxes::FIELDS * count)?,
+            obstacle_velocity: from
+                .take_finite("obstacle_velocity", envs * VELOCITY_DIM * count)?,
+            maps: from.take_array("maps", envs * MAP_WORDS)?,
+        };
+        let shown = &state.state_u32[state_u32::FRAME * envs..][..envs];
+        match shown.iter().find(|&&frame| frame as usize >= frames) {
+            Some(frame) => Err(SectionError(format!(
+                "it shows frame {frame} of a database of {frames}"
+            ))),
+            None => Ok(state),
         }
     }
 }
@@ -70,17 +75,4 @@ pub(super) fn gather<T: Copy>(all: &[T], old: usize, width: usize, envs: &[usize
         }
     }
     kept
-}
-
-/// `[count][environments of all parts][..]` from `[count][environments of a part][..]`.
-pub(super) fn fields<P, T: Copy>(count: usize, parts: &[P], values: impl Fn(&P) -> &[T]) -> Vec<T> {
-    let of_part = |field: usize, part: &P| {
-        let values = values(part);
-        let length = values.len() / count;
-        values[field * length..][..length].to_vec()
-    };
-    let order = (0..count).flat_map(|field| parts.iter().map(move |part| (field, part)));
-    order
-        .flat_map(|(field, part)| of_part(field, part))
-        .collect()
 }

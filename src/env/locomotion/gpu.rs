@@ -1,22 +1,30 @@
-//! A batch of worlds on the GPU: one launch after another on burn's own queue, nothing copied to
-//! the host.
+//! Environments on a GPU: one launch after another on burn's own queue, nothing copied to the host.
 
 use super::kernel_params::KernelParams;
-use crate::matching::gpu::Search;
 use super::live_view::{Buffers, LiveView};
-use super::{Setup, EnvState, Values, World};
-use crate::gpu::tensor::{from_buffer, to_buffer};
-use crate::gpu::{Buffer, Gpu};
-use crate::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, MAP_WORDS, boxes, state_f32, state_u32};
-use crate::kernels::learn::{sample_action, gae};
-use crate::kernels::locomotion::{obstacle_collision, hits, observe, build_query, reset, spawn_obstacles, rasterize_maps, advance_and_reward, episode_stats, move_obstacles};
-use crate::motion::database::{Database, ROW_STRIDE};
-use crate::motion::features::TRAJECTORY_DIM;
-use burn::tensor::Tensor;
+use super::{EnvConfig, EnvState, STAT_NAMES};
+use crate::container::{Section, SectionError};
+use crate::env::{EnvSpec, Transition, VecEnv};
+use crate::gpu::{Array, Buffer, Gpu};
+use crate::kernels::locomotion::locomotion_layout::{
+    MAP_WORDS, VELOCITY_DIM, boxes, state_f32, state_u32,
+};
+use crate::kernels::locomotion::{
+    advance_and_reward, build_query, episode_stats, hits, move_obstacles, observe,
+    obstacle_collision, rasterize_maps, reset, spawn_obstacles,
+};
+use crate::matching::MotionMatcher;
+use crate::matching::gpu::GpuSearch;
+use crate::motion::features::ROW_STRIDE;
+use anyhow::Result;
 
+/// A batch of locomotion environments on a GPU.
 pub struct GpuLocomotion {
     gpu: Gpu,
-    rules: KernelParams,
+    spec: EnvSpec,
+    params: KernelParams,
+    /// Frames of the database.
+    frames: usize,
     candidates: Buffer<u32>,
     /// `[frames][ROW_STRIDE]`
     features: Buffer<f32>,
@@ -35,23 +43,29 @@ pub struct GpuLocomotion {
     obstacle_velocity: Buffer<f32>,
     /// `[envs][MAP_WORDS]`
     maps: Buffer<u32>,
+    /// `[envs][ROW_STRIDE]`
     queries: Buffer<f32>,
-    search: Search,
-    reward: Buffer<f32>,
-    termination: Buffer<u32>,
-    /// `[final_steps][envs][width]`
-    last: Buffer<f32>,
+    search: GpuSearch,
+    /// `[envs]`, all zero: the terminations where no step has been played.
+    running: Buffer<u32>,
 }
 
 impl GpuLocomotion {
-    /// Worlds at the start of an episode; the limits of these first episodes are up to `spread`
-    /// early.
-    pub fn new(gpu: &Gpu, database: &Database, setup: &Setup, initial_age_jitter: u32) -> Self {
-        let (envs, rules) = (setup.envs, setup.rules(database));
+    /// Environments at the start of an episode; the limits of their first episodes are up to
+    /// `initial_age_jitter` steps early.
+    pub fn new(
+        gpu: &Gpu,
+        matcher: &MotionMatcher,
+        config: &EnvConfig,
+        initial_age_jitter: u32,
+    ) -> Self {
+        let (envs, database) = (config.envs, &matcher.database);
         // Without obstacles a buffer still has to be bound.
-        let count = setup.task.obstacles().max(1);
-        let width = setup.task.width();
-        let world = GpuLocomotion {
+        let count = config.task.obstacles().max(1);
+        let batch = GpuLocomotion {
+            spec: config.spec(),
+            params: KernelParams::new(config, 0, database.candidates.len()),
+            frames: database.frames(),
             candidates: Buffer::from_slice(gpu, &database.candidates),
             features: Buffer::from_slice(gpu, database.features.as_flattened()),
             motion: Buffer::from_slice(gpu, bytemuck::cast_slice(&database.motion)),
@@ -63,39 +77,41 @@ impl GpuLocomotion {
             obstacle_velocity: Buffer::zeroed(gpu, envs * VELOCITY_DIM * count),
             maps: Buffer::zeroed(gpu, envs * MAP_WORDS),
             queries: Buffer::zeroed(gpu, envs * ROW_STRIDE),
-            search: Search::new(gpu, database, envs),
-            reward: Buffer::zeroed(gpu, setup.horizon * envs),
-            termination: Buffer::zeroed(gpu, setup.horizon * envs),
-            last: Buffer::zeroed(gpu, rules.final_steps() * envs * width),
+            search: GpuSearch::new(gpu, matcher, envs),
+            running: Buffer::zeroed(gpu, envs),
             gpu: gpu.clone(),
-            rules,
         };
-        world.begin(true, initial_age_jitter);
-        world
+        batch.reset(&batch.running, true, initial_age_jitter);
+        batch
     }
 
-    /// Starts new episodes, `everywhere` or where this step ended one.
-    fn begin(&self, all: bool, initial_age_jitter: u32) {
-        let obstacles = self.rules.task.obstacles() > 0;
+    /// Starts new episodes, in `all` environments or where this step ended one.
+    fn reset(&self, termination: &Buffer<u32>, all: bool, initial_age_jitter: u32) {
+        let obstacles = self.params.task.obstacles() > 0;
         if obstacles {
-            let params = self.rules.scatter(all);
-            spawn_obstacles::launch(&self.gpu, &self.termination, &self.boxes, &self.obstacle_velocity, &params);
+            spawn_obstacles::launch(
+                &self.gpu,
+                termination,
+                &self.boxes,
+                &self.obstacle_velocity,
+                &self.params.spawn_obstacles(all),
+            );
         }
         reset::launch(
             &self.gpu,
             &self.candidates,
-            &self.termination,
+            termination,
             &self.boxes,
             &self.state_f32,
             &self.state_u32,
-            &self.rules.reset(all, initial_age_jitter),
+            &self.params.reset(all, initial_age_jitter),
         );
         if obstacles {
-            self.sense(true);
+            self.rasterize_maps(true);
         }
     }
 
-    fn sense(&self, just_reset: bool) {
+    fn rasterize_maps(&self, just_reset: bool) {
         rasterize_maps::launch(
             &self.gpu,
             &self.boxes,
@@ -103,86 +119,96 @@ impl GpuLocomotion {
             &self.state_f32,
             &self.state_u32,
             &self.maps,
-            &self.rules.sense(just_reset),
+            &self.params.rasterize_maps(just_reset),
         );
     }
 
-    fn see(&self, observation: &Buffer<f32>, params: &observe::Params) {
+    fn write_observation(
+        &self,
+        termination: &Buffer<u32>,
+        observation: &Buffer<f32>,
+        params: &observe::Params,
+    ) {
         observe::launch(
             &self.gpu,
             &self.features,
             &self.state_f32,
             &self.state_u32,
-            &self.termination,
+            termination,
             &self.maps,
             observation,
             params,
         );
     }
-}
 
-impl World for GpuLocomotion {
-    fn observe(&mut self) -> Tensor<2> {
-        let shape = [self.rules.envs, self.rules.task.width()];
-        let observation = Buffer::empty(&self.gpu, shape[0] * shape[1]);
-        self.see(&observation, &self.rules.observe());
-        from_buffer(&self.gpu, &observation, shape)
-    }
-
-    fn act(&mut self, mean: Tensor<2>, log_std: Tensor<1>) -> (Tensor<2>, Tensor<1>) {
-        let envs = self.rules.envs;
-        let action = Buffer::empty(&self.gpu, envs * TRAJECTORY_DIM);
-        let log_prob = Buffer::empty(&self.gpu, envs);
-        sample_action::launch(
-            &self.gpu,
-            &to_buffer(mean),
-            &to_buffer(log_std),
-            &action,
-            &log_prob,
-            &self.rules.act(),
-        );
-        (
-            from_buffer(&self.gpu, &action, [envs, TRAJECTORY_DIM]),
-            from_buffer(&self.gpu, &log_prob, [envs]),
-        )
-    }
-
-    fn step(&mut self, action: Tensor<2>) {
-        let obstacles = self.rules.task.obstacles() > 0;
-        let action = to_buffer(action);
-        if obstacles {
-            hits::launch(
-                &self.gpu,
-                &action,
-                &self.normal,
-                &self.boxes,
-                &self.state_f32,
-                &self.state_u32,
-                &self.rules.hits(),
-            );
-        }
+    /// Finds the nearest candidates of the queries that the actions complete.
+    fn search(&self, action: &Buffer<f32>, at: usize) -> &Buffer<u32> {
         build_query::launch(
             &self.gpu,
             &self.features,
             &self.state_u32,
-            &action,
+            action,
             &self.queries,
-            &self.rules.query(),
+            &self.params.build_query(at),
         );
-        let matched = self.search.nearest(&self.gpu, &self.state_u32, &self.queries);
+        self.search
+            .nearest(&self.gpu, &self.state_u32, &self.queries)
+    }
+
+    fn hits(&self, action: &Buffer<f32>, at: usize) {
+        hits::launch(
+            &self.gpu,
+            action,
+            &self.normal,
+            &self.boxes,
+            &self.state_f32,
+            &self.state_u32,
+            &self.params.hits(at),
+        );
+    }
+
+    fn move_obstacles(&self, matched: &Buffer<u32>) {
+        obstacle_collision::launch(
+            &self.gpu,
+            &self.candidates,
+            matched,
+            &self.path,
+            &self.boxes,
+            &self.obstacle_velocity,
+            &self.state_f32,
+            &self.state_u32,
+            &self.params.obstacle_collision(),
+        );
+        move_obstacles::launch(
+            &self.gpu,
+            &self.boxes,
+            &self.obstacle_velocity,
+            &self.params.move_obstacles(),
+        );
+    }
+}
+
+impl VecEnv for GpuLocomotion {
+    fn spec(&self) -> &EnvSpec {
+        &self.spec
+    }
+
+    fn observe(&mut self, out: &mut Array, at: usize) {
+        let row = at / self.params.observation_dim();
+        self.params.offset = 0;
+        self.write_observation(&self.running, out.buffer(), &self.params.observe(row));
+    }
+
+    fn step(&mut self, action: &Array, at: usize, out: Transition) {
+        let obstacles = self.params.task.obstacles() > 0;
+        let (action, termination) = (action.buffer(), out.termination.buffer());
+        self.params.offset = out.step * self.params.envs;
         if obstacles {
-            obstacle_collision::launch(
-                &self.gpu,
-                &self.candidates,
-                matched,
-                &self.path,
-                &self.boxes,
-                &self.obstacle_velocity,
-                &self.state_f32,
-                &self.state_u32,
-                &self.rules.collide(),
-            );
-            move_obstacles::launch(&self.gpu, &self.boxes, &self.obstacle_velocity, &self.rules.wander());
+            self.hits(action, at);
+        }
+        let matched = self.search(action, at);
+        if obstacles {
+            self.move_obstacles(matched);
         }
         advance_and_reward::launch(
             &self.gpu,
@@ -191,91 +217,79 @@ impl World for GpuLocomotion {
             &self.motion,
             &self.state_f32,
             &self.state_u32,
-            &self.reward,
-            &self.termination,
-            &self.rules.step(),
+            out.reward.buffer(),
+            termination,
+            &self.params.advance_and_reward(),
         );
         if obstacles {
-            self.sense(false);
+            self.rasterize_maps(false);
         }
-        self.see(&self.last, &self.rules.observe_last());
-        self.begin(false, 0);
-        self.rules.step_counter += 1;
+        let params = self.params.observe_final(self.spec.final_row(out.step));
+        self.write_observation(termination, out.final_observation.buffer(), &params);
+        self.reset(termination, false, 0);
+        self.params.step_counter += 1;
     }
 
-    fn last(&mut self) -> Tensor<2> {
-        let width = self.rules.task.width();
-        from_buffer(&self.gpu, &self.last, [self.last.len() / width, width])
+    fn stat_names(&self) -> &'static [&'static str] {
+        &STAT_NAMES
     }
 
-    fn judge(&mut self, values: Values, gamma: f32, lambda: f32) -> (Tensor<1>, Tensor<1>) {
-        let samples = self.reward.len();
-        let advantage = Buffer::empty(&self.gpu, samples);
-        let target = Buffer::empty(&self.gpu, samples);
-        gae::launch(
+    fn stats(&mut self, out: &mut Array) {
+        let params = self.params.episode_stats();
+        episode_stats::launch(
             &self.gpu,
-            &self.reward,
-            &self.termination,
-            &to_buffer(values.observed),
-            &to_buffer(values.next),
-            &to_buffer(values.last),
-            &to_buffer(values.scale),
-            &advantage,
-            &target,
-            &self.rules.gae(gamma, lambda),
+            &self.state_f32,
+            &self.state_u32,
+            out.buffer(),
+            &params,
         );
-        (
-            from_buffer(&self.gpu, &advantage, [samples]),
-            from_buffer(&self.gpu, &target, [samples]),
-        )
-    }
-
-    fn tally(&mut self) -> Tensor<1> {
-        let sums = Buffer::empty(&self.gpu, episode_stats::SUMS);
-        let params = self.rules.tally();
-        episode_stats::launch(&self.gpu, &self.state_f32, &self.state_u32, &sums, &params);
-        from_buffer(&self.gpu, &sums, [episode_stats::SUMS])
     }
 
     fn set_level(&mut self, level: u32) {
-        self.rules.level = level;
+        self.params.level = level;
     }
 
-    fn snapshot(&self) -> anyhow::Result<EnvState> {
-        let count = self.rules.task.obstacles();
-        let (mut boxes, mut obstacle_velocity) = (self.boxes.read(&self.gpu)?, self.obstacle_velocity.read(&self.gpu)?);
-        boxes.truncate(self.rules.envs * boxes::FIELDS * count);
-        obstacle_velocity.truncate(self.rules.envs * VELOCITY_DIM * count);
-        Ok(EnvState {
-            step_counter: self.rules.step_counter,
-            level: self.rules.level,
+    fn live_view(&mut self) -> Result<Option<LiveView>> {
+        Ok(Some(LiveView::Gpu(Box::new(Buffers {
+            state_f32: self.state_f32.share(&self.gpu)?,
+            state_u32: self.state_u32.share(&self.gpu)?,
+            boxes: match self.params.task.obstacles() {
+                0 => None,
+                _ => Some(self.boxes.share(&self.gpu)?),
+            },
+        }))))
+    }
+
+    fn save(&self, to: &mut Section) -> Result<()> {
+        let (envs, count) = (self.params.envs, self.params.task.obstacles());
+        let mut boxes = self.boxes.read(&self.gpu)?;
+        let mut obstacle_velocity = self.obstacle_velocity.read(&self.gpu)?;
+        boxes.truncate(envs * boxes::FIELDS * count);
+        obstacle_velocity.truncate(envs * VELOCITY_DIM * count);
+        EnvState {
+            step_counter: self.params.step_counter,
+            level: self.params.level,
             state_f32: self.state_f32.read(&self.gpu)?,
             state_u32: self.state_u32.read(&self.gpu)?,
             boxes,
             obstacle_velocity,
             maps: self.maps.read(&self.gpu)?,
-        })
-    }
-
-    fn watch(&mut self) -> anyhow::Result<LiveView> {
-        Ok(LiveView::Gpu(Box::new(Buffers {
-            state_f32: self.state_f32.share(&self.gpu)?,
-            state_u32: self.state_u32.share(&self.gpu)?,
-            boxes: match self.rules.task.obstacles() {
-                0 => None,
-                _ => Some(self.boxes.share(&self.gpu)?),
-            },
-        })))
-    }
-
-    fn restore(&mut self, snapshot: &EnvState) {
-        (self.rules.step_counter, self.rules.level) = (snapshot.step_counter, snapshot.level);
-        self.state_f32 = Buffer::from_slice(&self.gpu, &snapshot.state_f32);
-        self.state_u32 = Buffer::from_slice(&self.gpu, &snapshot.state_u32);
-        self.maps = Buffer::from_slice(&self.gpu, &snapshot.maps);
-        if self.rules.task.obstacles() > 0 {
-            self.boxes = Buffer::from_slice(&self.gpu, &snapshot.boxes);
-            self.obstacle_velocity = Buffer::from_slice(&self.gpu, &snapshot.obstacle_velocity);
         }
+        .save(to);
+        Ok(())
+    }
+
+    fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
+        let (envs, count) = (self.params.envs, self.params.task.obstacles());
+        let state = EnvState::load(from, envs, count, self.frames)?;
+        (self.params.step_counter, self.params.level) = (state.step_counter, state.level);
+        self.state_f32 = Buffer::from_slice(&self.gpu, &state.state_f32);
+        self.state_u32 = Buffer::from_slice(&self.gpu, &state.state_u32);
+        self.maps = Buffer::from_slice(&self.gpu, &state.maps);
+        if count > 0 {
+            self.boxes = Buffer::from_slice(&self.gpu, &state.boxes);
+            self.obstacle_velocity = Buffer::from_slice(&self.gpu, &state.obstacle_velocity);
+        }
+        Ok(())
     }
 }

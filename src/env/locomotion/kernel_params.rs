@@ -1,8 +1,9 @@
 //! The parameters of every kernel, for a task on a level at one moment of a run.
 
-use super::task::{LEVELS, Motion, Reward, Task};
-use crate::kernels::locomotion::locomotion_layout::{CELLS, termination};
-use crate::kernels::learn::{sample_action, gae};
+use super::EnvConfig;
+use super::task::{LEVELS, Motion, Reward, LocomotionTask};
+use crate::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, CELLS, MAP_OBS_DIM};
+use crate::kernels::termination;
 use crate::kernels::locomotion::{obstacle_collision, hits, observe, build_query, reset, spawn_obstacles, rasterize_maps, advance_and_reward, episode_stats, move_obstacles};
 use crate::motion::RATE;
 use crate::motion::features::FRAMES_PER_STEP;
@@ -10,58 +11,53 @@ use crate::motion::features::FRAMES_PER_STEP;
 /// What the parameters depend on.
 #[derive(Clone, Debug)]
 pub struct KernelParams {
-    pub task: Task,
+    pub task: LocomotionTask,
     pub envs: usize,
-    /// The first one's number in its batch.
+    /// Number of the first environment in its batch.
     pub first: usize,
-    /// Steps of a rollout.
-    pub horizon: usize,
     /// Candidates of the database.
     pub candidates: usize,
     pub seed: u32,
     /// Steps of the run so far: the random numbers' counter.
     pub step_counter: u32,
     pub level: u32,
+    /// Where this step's rewards and terminations begin in the columns they are written to.
+    pub offset: usize,
 }
 
 impl KernelParams {
-    /// Where this step's rewards and ends begin in the rollout.
-    pub fn offset(&self) -> usize {
-        self.step_counter as usize % self.horizon * self.envs
-    }
-
-    /// Steps of a rollout whose last real states are kept: one row of environments suffices if none
-    /// can have two such ends in a rollout.
-    pub fn final_steps(&self) -> usize {
-        match self.task.bootstrap() == 1 << termination::TRUNCATED {
-            true => 1,
-            false => self.horizon,
+    /// At the start of a run over a database of so many candidates.
+    pub fn new(config: &EnvConfig, first: usize, candidates: usize) -> Self {
+        KernelParams {
+            task: config.task,
+            envs: config.envs,
+            first,
+            candidates,
+            seed: config.seed,
+            step_counter: 0,
+            level: config.level,
+            offset: 0,
         }
     }
 
-    pub fn act(&self) -> sample_action::Params {
-        sample_action::Params {
-            envs: self.envs as u32,
-            first: self.first as u32,
-            seed: self.seed,
-            step_counter: self.step_counter,
-        }
-    }
-
-    pub fn hits(&self) -> hits::Params {
+    /// `action_at`: where the first number of this step's actions is.
+    pub fn hits(&self, action_at: usize) -> hits::Params {
         hits::Params {
             envs: self.envs as u32,
+            action_at: action_at as u32,
             count: self.task.obstacles() as u32,
         }
     }
 
-    pub fn query(&self) -> build_query::Params {
+    /// `action_at`: as for [`KernelParams::hits`].
+    pub fn build_query(&self, action_at: usize) -> build_query::Params {
         build_query::Params {
             envs: self.envs as u32,
+            action_at: action_at as u32,
         }
     }
 
-    pub fn collide(&self) -> obstacle_collision::Params {
+    pub fn obstacle_collision(&self) -> obstacle_collision::Params {
         obstacle_collision::Params {
             envs: self.envs as u32,
             count: self.task.obstacles() as u32,
@@ -70,7 +66,7 @@ impl KernelParams {
         }
     }
 
-    pub fn wander(&self) -> move_obstacles::Params {
+    pub fn move_obstacles(&self) -> move_obstacles::Params {
         move_obstacles::Params {
             envs: self.envs as u32,
             count: self.task.obstacles() as u32,
@@ -81,15 +77,15 @@ impl KernelParams {
 
     fn square(&self) -> f32 {
         match self.task {
-            Task::Plane(_) => 0.0,
-            Task::Obstacles(task) => task.square,
+            LocomotionTask::Plane(_) => 0.0,
+            LocomotionTask::Obstacles(task) => task.square,
         }
     }
 
-    pub fn step(&self) -> advance_and_reward::Params {
-        let (envs, offset) = (self.envs as u32, self.offset() as u32);
+    pub fn advance_and_reward(&self) -> advance_and_reward::Params {
+        let (envs, offset) = (self.envs as u32, self.offset as u32);
         match self.task {
-            Task::Plane(task) => advance_and_reward::Params {
+            LocomotionTask::Plane(task) => advance_and_reward::Params {
                 envs,
                 offset,
                 reach: task.reach,
@@ -100,7 +96,7 @@ impl KernelParams {
                 bonus: task.bonus,
                 crash: 0.0,
             },
-            Task::Obstacles(task) => {
+            LocomotionTask::Obstacles(task) => {
                 let (near, progress) = match task.reward {
                     Reward::Paper => (1.0, 0.0),
                     Reward::Progress => (0.0, super::task::PROGRESS),
@@ -120,11 +116,11 @@ impl KernelParams {
         }
     }
 
-    /// `begun`: only the episodes that have just begun, or only the others.
-    pub fn sense(&self, just_reset: bool) -> rasterize_maps::Params {
+    /// `just_reset`: only the episodes that have just begun, or only the others.
+    pub fn rasterize_maps(&self, just_reset: bool) -> rasterize_maps::Params {
         let (edge, back) = match self.task {
-            Task::Plane(_) => (0.0, 0.0),
-            Task::Obstacles(task) => (task.edge, task.look_back),
+            LocomotionTask::Plane(_) => (0.0, 0.0),
+            LocomotionTask::Obstacles(task) => (task.edge, task.look_back),
         };
         rasterize_maps::Params {
             envs: self.envs as u32,
@@ -136,36 +132,34 @@ impl KernelParams {
         }
     }
 
-    /// Of all environments.
-    pub fn observe(&self) -> observe::Params {
+    /// Of all environments; `to`: the first row to write.
+    pub fn observe(&self, to: usize) -> observe::Params {
         observe::Params {
             envs: self.envs as u32,
-            rows: match self.task {
-                Task::Plane(_) => 1,
-                Task::Obstacles(_) => CELLS as u32,
-            },
-            width: self.task.width() as u32,
-            offset: self.offset() as u32,
+            rows: if self.task.has_maps() { CELLS as u32 } else { 1 },
+            width: self.observation_dim() as u32,
+            offset: self.offset as u32,
             only: termination::ANY,
-            to: 0,
+            to: to as u32,
         }
     }
 
     /// Of the environments whose episode this step ended and whose value goes on.
-    pub fn observe_last(&self) -> observe::Params {
+    pub fn observe_final(&self, to: usize) -> observe::Params {
         observe::Params {
             only: self.task.bootstrap(),
-            to: match self.final_steps() {
-                1 => 0,
-                _ => self.offset() as u32,
-            },
-            ..self.observe()
+            ..self.observe(to)
         }
     }
 
+    /// Numbers of an observation.
+    pub fn observation_dim(&self) -> usize {
+        BASE_OBS_DIM + if self.task.has_maps() { MAP_OBS_DIM } else { 0 }
+    }
+
     /// New obstacles `everywhere` or where this step ended an episode.
-    pub fn scatter(&self, all: bool) -> spawn_obstacles::Params {
-        let Task::Obstacles(task) = self.task else {
+    pub fn spawn_obstacles(&self, all: bool) -> spawn_obstacles::Params {
+        let LocomotionTask::Obstacles(task) = self.task else {
             unreachable!("only the task with obstacles draws them")
         };
         spawn_obstacles::Params {
@@ -173,8 +167,8 @@ impl KernelParams {
             first: self.first as u32,
             count: task.count,
             seed: self.seed,
-            step_counter: self.draws(all),
-            offset: self.offset() as u32,
+            step_counter: self.reset_counter(all),
+            offset: self.offset as u32,
             all: all.into(),
             side_min: task.side_min,
             side_max: task.side_max,
@@ -191,8 +185,8 @@ impl KernelParams {
     /// New episodes `everywhere` or where this step ended one, with limits up to `spread` early.
     pub fn reset(&self, all: bool, initial_age_jitter: u32) -> reset::Params {
         let (reach, clear) = match self.task {
-            Task::Plane(task) => (task.reach, false),
-            Task::Obstacles(task) => (task.reach, task.target_clear),
+            LocomotionTask::Plane(task) => (task.reach, false),
+            LocomotionTask::Obstacles(task) => (task.reach, task.target_clear),
         };
         reset::Params {
             envs: self.envs as u32,
@@ -200,8 +194,8 @@ impl KernelParams {
             candidates: self.candidates as u32,
             count: self.task.obstacles() as u32,
             seed: self.seed,
-            step_counter: self.draws(all),
-            offset: self.offset() as u32,
+            step_counter: self.reset_counter(all),
+            offset: self.offset as u32,
             all: all.into(),
             max_steps: self.task.max_steps(),
             initial_age_jitter,
@@ -213,22 +207,11 @@ impl KernelParams {
 
     /// The counter of a reset's random numbers: after a step it is the next step's, so that the very
     /// first episodes have one of their own.
-    fn draws(&self, all: bool) -> u32 {
+    fn reset_counter(&self, all: bool) -> u32 {
         self.step_counter.wrapping_add(u32::from(!all))
     }
 
-    pub fn gae(&self, gamma: f32, lambda: f32) -> gae::Params {
-        gae::Params {
-            envs: self.envs as u32,
-            steps: self.horizon as u32,
-            gamma,
-            lambda,
-            bootstrap: self.task.bootstrap(),
-            final_steps: self.final_steps() as u32,
-        }
-    }
-
-    pub fn tally(&self) -> episode_stats::Params {
+    pub fn episode_stats(&self) -> episode_stats::Params {
         episode_stats::Params {
             envs: self.envs as u32,
         }

@@ -1,6 +1,5 @@
 //! Worlds, seen from outside while they run.
 
-use super::env_state::fields;
 use crate::gpu::Shared;
 use crate::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -32,6 +31,19 @@ pub struct State {
     pub state_f32: Vec<f32>,
     pub state_u32: Vec<u32>,
     pub boxes: Vec<f32>,
+}
+
+/// `[count][environments of all parts][..]` from `[count][environments of a part][..]`.
+fn fields<P, T: Copy>(count: usize, parts: &[P], values: impl Fn(&P) -> &[T]) -> Vec<T> {
+    let of_part = |field: usize, part: &P| {
+        let values = values(part);
+        let length = values.len() / count;
+        values[field * length..][..length].to_vec()
+    };
+    let order = (0..count).flat_map(|field| parts.iter().map(move |part| (field, part)));
+    order
+        .flat_map(|(field, part)| of_part(field, part))
+        .collect()
 }
 
 impl State {

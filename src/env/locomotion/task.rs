@@ -1,12 +1,13 @@
 //! What is asked of the character.
 
-use crate::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, MAP_OBS_DIM, termination};
+use crate::env::curriculum::Curriculum;
+use crate::env::termination;
 use serde::{Deserialize, Serialize};
 
 /// A task with its choices.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Task {
+pub enum LocomotionTask {
     Plane(Plane),
     Obstacles(Obstacles),
 }
@@ -168,51 +169,51 @@ impl Obstacles {
     };
 }
 
-impl Task {
+impl LocomotionTask {
     /// As on the command line.
     pub fn name(&self) -> &'static str {
         match self {
-            Task::Plane(_) => "plane",
-            Task::Obstacles(_) => "obstacles",
+            LocomotionTask::Plane(_) => "plane",
+            LocomotionTask::Obstacles(_) => "obstacles",
         }
     }
 
-    /// Numbers of an observation.
-    pub fn width(&self) -> usize {
-        match self {
-            Task::Plane(_) => BASE_OBS_DIM,
-            Task::Obstacles(_) => BASE_OBS_DIM + MAP_OBS_DIM,
-        }
+    /// Whether an observation has obstacle maps.
+    pub fn has_maps(&self) -> bool {
+        matches!(self, LocomotionTask::Obstacles(_))
     }
 
     /// Obstacles of an environment.
     pub fn obstacles(&self) -> usize {
         match self {
-            Task::Plane(_) => 0,
-            Task::Obstacles(obstacles) => obstacles.count as usize,
+            LocomotionTask::Plane(_) => 0,
+            LocomotionTask::Obstacles(obstacles) => obstacles.count as usize,
         }
     }
 
     pub fn max_steps(&self) -> u32 {
         match self {
-            Task::Plane(plane) => plane.max_steps,
-            Task::Obstacles(obstacles) => obstacles.max_steps,
+            LocomotionTask::Plane(plane) => plane.max_steps,
+            LocomotionTask::Obstacles(obstacles) => obstacles.max_steps,
         }
     }
 
-    /// The level training begins on.
-    pub fn first_level(&self) -> u32 {
+    /// The curriculum of a training, if the task has levels.
+    pub fn curriculum(&self) -> Option<Curriculum> {
         match self {
-            Task::Obstacles(obstacles) if obstacles.curriculum => 0,
-            _ => LEVELS - 1,
+            LocomotionTask::Plane(_) => None,
+            LocomotionTask::Obstacles(obstacles) => {
+                let first = if obstacles.curriculum { 0 } else { LEVELS - 1 };
+                Some(Curriculum::new(LEVELS, first, obstacles.pass))
+            }
         }
     }
 
     /// Half the side of the square of targets on a level, m.
     pub fn half_side(&self, level: u32) -> f32 {
         match self {
-            Task::Plane(plane) => plane.half_side,
-            Task::Obstacles(obstacles) => {
+            LocomotionTask::Plane(plane) => plane.half_side,
+            LocomotionTask::Obstacles(obstacles) => {
                 let (first, last) = (obstacles.half_side_first, obstacles.half_side_last);
                 first + (last - first) * level as f32 / (LEVELS - 1) as f32
             }
@@ -222,12 +223,12 @@ impl Task {
     /// Ends after which the value of the last real state goes on, `1 << end` each.
     pub fn bootstrap(&self) -> u32 {
         let arrival = match self {
-            Task::Obstacles(obstacles) => obstacles.arrival,
-            Task::Plane(_) => Arrival::Terminal,
+            LocomotionTask::Obstacles(obstacles) => obstacles.arrival,
+            LocomotionTask::Plane(_) => Arrival::Terminal,
         };
         match arrival {
             Arrival::Terminal => 1 << termination::TRUNCATED,
-            Arrival::Continue => 1 << termination::TRUNCATED | 1 << termination::REACHED,
+            Arrival::Continue => 1 << termination::TRUNCATED | 1 << termination::SUCCESS,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Generalised advantage estimation. Shader: `shaders/learn/gae.wgsl`.
 
-use crate::kernels::locomotion::locomotion_layout::termination;
+use crate::kernels::termination;
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 

@@ -1,6 +1,7 @@
 //! Plays six frames, rewards and ends. Shader: `shaders/world/step.wgsl`.
 
-use super::locomotion_layout::{termination, state_f32, state_u32};
+use super::locomotion_layout::{state_f32, state_u32};
+use crate::kernels::termination;
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::database::RootMotion;
@@ -90,9 +91,9 @@ pub fn twin(
             + params.progress * approached
             + params.clear * ((-hits).exp() - params.shift);
         let (end, gained) = if state_u32[r(state_u32::HAS_COLLIDED)] == 1 {
-            (termination::COLLIDED, walked + params.crash)
+            (termination::FAILED, walked + params.crash)
         } else if distance <= params.reach {
-            (termination::REACHED, walked + params.bonus)
+            (termination::SUCCESS, walked + params.bonus)
         } else if age >= state_u32[r(state_u32::EPISODE_LIMIT)] {
             (termination::TRUNCATED, walked)
         } else {
@@ -105,8 +106,8 @@ pub fn twin(
         if end != termination::RUNNING {
             state_f32[r(state_f32::RETURNS)] += total;
             state_u32[r(state_u32::EPISODES)] += 1;
-            state_u32[r(state_u32::SUCCESSES)] += u32::from(end == termination::REACHED);
-            state_u32[r(state_u32::COLLISIONS)] += u32::from(end == termination::COLLIDED);
+            state_u32[r(state_u32::SUCCESSES)] += u32::from(end == termination::SUCCESS);
+            state_u32[r(state_u32::COLLISIONS)] += u32::from(end == termination::FAILED);
             state_u32[r(state_u32::TRUNCATIONS)] += u32::from(end == termination::TRUNCATED);
             state_u32[r(state_u32::LENGTHS)] += age;
         }

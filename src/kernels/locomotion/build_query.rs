@@ -10,6 +10,8 @@ use crate::motion::features::{FEATURE_DIM, POSE_DIM, TRAJECTORY_DIM};
 crate::shader_params! {
     pub struct Params for build_query {
         pub envs: u32,
+        /// Where the first number of the actions is.
+        pub action_at: u32,
     }
 }
 
@@ -41,7 +43,8 @@ pub fn twin(
     for (env, row) in queries.iter_mut().enumerate().take(envs) {
         let frame = state_u32[state_u32::FRAME * envs + env] as usize;
         row[..POSE_DIM].copy_from_slice(&features[frame][..POSE_DIM]);
-        row[POSE_DIM..FEATURE_DIM].copy_from_slice(&action[env * TRAJECTORY_DIM..(env + 1) * TRAJECTORY_DIM]);
+        let action = &action[params.action_at as usize + env * TRAJECTORY_DIM..][..TRAJECTORY_DIM];
+        row[POSE_DIM..FEATURE_DIM].copy_from_slice(action);
         row[FEATURE_DIM..].fill(1.0);
     }
 }

@@ -12,6 +12,8 @@ use rayon::prelude::*;
 crate::shader_params! {
     pub struct Params for hits {
         pub envs: u32,
+        /// Where the first number of the actions is.
+        pub action_at: u32,
         /// Obstacles of an environment.
         pub count: u32,
     }
@@ -53,7 +55,7 @@ pub fn twin(
         let boxes = &boxes[env * boxes::FIELDS * count..][..boxes::FIELDS * count];
         let hit = |k: &usize| {
             let asked = [4 * k, 4 * k + 1]
-                .map(|i| action[env * TRAJECTORY_DIM + i] / normal[TRAJECTORY_DIM + i] + normal[i]);
+                .map(|i| action[params.action_at as usize + env * TRAJECTORY_DIM + i] / normal[TRAJECTORY_DIM + i] + normal[i]);
             let moved = to_world(asked, heading);
             let point = [r(state_f32::X) + moved[0], r(state_f32::Z) + moved[1]];
             obstructed(point, boxes, count)

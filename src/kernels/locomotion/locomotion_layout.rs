@@ -80,18 +80,6 @@ pub mod boxes {
 /// Axes of the obstacles' velocities, m/s, `drift[(env * VELOCITY_DIM + axis) * count + slot]`.
 pub const VELOCITY_DIM: usize = 2;
 
-/// How a step ends.
-pub mod termination {
-    pub const RUNNING: u32 = 0;
-    pub const REACHED: u32 = 1;
-    /// Out of steps: not terminal, bootstrapped with the value of the last real state.
-    pub const TRUNCATED: u32 = 2;
-    /// Ran into an obstacle.
-    pub const COLLIDED: u32 = 3;
-    /// The set of all of them; a set has the bit `1 << end` for each.
-    pub const ANY: u32 = u32::MAX;
-}
-
 const _: () = {
     assert!(wgsl::POSE_DIM as usize == POSE_DIM && wgsl::TRAJECTORY_DIM as usize == TRAJECTORY_DIM);
     assert!(wgsl::FEATURE_DIM as usize == FEATURE_DIM && wgsl::QUADS as usize * 4 == ROW_STRIDE);
@@ -117,6 +105,4 @@ const _: () = {
     assert!(wgsl::BOX_X as usize == boxes::X && wgsl::BOX_Z as usize == boxes::Z);
     assert!(wgsl::HALF_X as usize == boxes::HALF_X && wgsl::HALF_Z as usize == boxes::HALF_Z);
     assert!(wgsl::BOX as usize == boxes::FIELDS && wgsl::VELOCITY_DIM as usize == VELOCITY_DIM);
-    assert!(wgsl::RUNNING == termination::RUNNING && wgsl::REACHED == termination::REACHED);
-    assert!(wgsl::TRUNCATED == termination::TRUNCATED && wgsl::COLLIDED == termination::COLLIDED);
 };

@@ -1,7 +1,8 @@
 //! Starts new episodes. Shader: `shaders/world/reset.wgsl`.
 
 use super::hits::obstructed;
-use super::locomotion_layout::{boxes, termination, state_f32, state_u32};
+use super::locomotion_layout::{boxes, state_f32, state_u32};
+use crate::kernels::termination;
 use crate::kernels::rng::{gaussian, index_below, random4, uniform01};
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};

@@ -1,6 +1,7 @@
 //! Draws the obstacles of new episodes. Shader: `shaders/world/scatter.wgsl`.
 
-use super::locomotion_layout::{VELOCITY_DIM, boxes, termination};
+use super::locomotion_layout::{VELOCITY_DIM, boxes};
+use crate::kernels::termination;
 use crate::kernels::rng::{gaussian, random4, uniform01};
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};

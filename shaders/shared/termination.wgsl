@@ -1,0 +1,6 @@
+// How a step ends for an agent (src/kernels/termination.rs).
+
+const RUNNING = 0u;
+const SUCCESS = 1u;   // the task is done
+const TRUNCATED = 2u; // out of steps
+const FAILED = 3u;    // a collision, a fall
