@@ -89,7 +89,7 @@ fn play(
         (vec![], vec![], vec![], vec![]);
     let mut acting_share = 0.0;
     let begin = Instant::now();
-    for step in 0..config.horizon {
+    for step in 0..config.rollout_length {
         // A GPU only queues what it is asked for; the first step of a rollout waits for it, to
         // see how the time of all divides.
         let clock = || -> Result<Instant> {

@@ -78,7 +78,7 @@ impl Crowd {
             count: task.obstacles() as u32,
             spacing: match task {
                 Task::Plane(_) => SPACING,
-                Task::Obstacles(task) => 2.0 * task.square + SPACING,
+                Task::Obstacles(task) => 2.0 * task.arena_half_extent + SPACING,
             },
             unused: [0; 2],
         };

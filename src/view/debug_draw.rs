@@ -19,8 +19,8 @@ const HEIGHT: f32 = 0.35;
 pub fn scene(rollout: &Rollout, stage: &Stage) -> Scene {
     let mut scene = untargeted(rollout, stage);
     let reach = match stage.task {
-        Task::Plane(plane) => plane.reach,
-        Task::Obstacles(obstacles) => obstacles.reach,
+        Task::Plane(plane) => plane.success_radius,
+        Task::Obstacles(obstacles) => obstacles.success_radius,
     };
     target(&mut scene, rollout.target(), reach);
     obstacles(&mut scene, rollout);

@@ -14,7 +14,7 @@ use footwork::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, CELLS, BASE
 use footwork::motion::features::{POSE_DIM, TRAJECTORY_DIM};
 use footwork::nn::tensors::{read, upload, vector};
 use footwork::train::controller::{Controller, Scripted};
-use footwork::env::locomotion::task::{Arrival, Motion};
+use footwork::env::locomotion::task::SpeedDistribution;
 use footwork::env::locomotion::{LEVELS, Obstacles, Setup, EnvState, Task, Values, World, open};
 use std::collections::HashSet;
 use std::ops::Range;
@@ -113,7 +113,7 @@ impl Pair {
 
     /// What rounding may change a cell's byte by.
     fn step_of_a_cell(&self) -> u8 {
-        u8::from(self.task.edge > 0.0)
+        u8::from(self.task.map_edge_width > 0.0)
     }
 
     /// How far the nearest decision of a step is from going the other way, m.
@@ -129,7 +129,7 @@ impl Pair {
             depth(&then, stood.point(left, ahead))
         });
         let walked = self.walked(before, env, action);
-        let side = f64::from(self.task.square);
+        let side = f64::from(self.task.arena_half_extent);
         let struck = walked.iter().enumerate().map(|(k, &point)| {
             let moved = then.iter().map(|o| o.moved((k + 1) as f64 / 30.0, side));
             depth(&moved.collect::<Vec<_>>(), point)
@@ -137,7 +137,7 @@ impl Pair {
         let target = [state_f32::TARGET_X, state_f32::TARGET_Z]
             .map(|field| f64::from(before.state_f32[field * ENVS + env]));
         let [x, z] = [0, 1].map(|i| target[i] - walked[5][i]);
-        let arrival = x.hypot(z) - f64::from(self.task.reach);
+        let arrival = x.hypot(z) - f64::from(self.task.success_radius);
         let stands = stance(&after.state_f32, ENVS, env);
         let cells = (0..CELLS * CELLS).map(|i| depth(&now, stands.cell(i / CELLS, i % CELLS)));
         let all = asked.into_iter().chain(struck).chain(cells);
@@ -179,7 +179,7 @@ impl Pair {
     /// The same for the last real observations of a rollout's episodes, and what is made of them.
     fn end_rollout(&mut self) {
         let [cpu, gpu] = [0, 1].map(|at| read(self.worlds[at].last()).expect("observation"));
-        let rows = if self.task.arrival == Arrival::Continue {
+        let rows = if !self.task.success_is_terminal {
             HORIZON * ENVS
         } else {
             ENVS
@@ -322,8 +322,8 @@ fn two_hundred_steps_of_the_papers_task_agree() {
 #[test]
 fn every_other_switch_agrees() {
     let task = Obstacles {
-        motion: Motion::Uniform,
-        arrival: Arrival::Continue,
+        speed_distribution: SpeedDistribution::Uniform,
+        success_is_terminal: false,
         count: 37,
         speed: 3.0,
         max_steps: 12,

@@ -107,8 +107,8 @@ impl Worlds {
 #[test]
 fn the_task_is_the_papers() {
     let task = Plane::default();
-    assert_eq!((task.reach, task.bonus), (0.5, 1000.0));
-    assert_eq!((task.half_side, task.max_steps, FRAMES_PER_STEP), (5.0, 200, 6));
+    assert_eq!((task.success_radius, task.success_bonus), (0.5, 1000.0));
+    assert_eq!((task.target_extent, task.max_steps, FRAMES_PER_STEP), (5.0, 200, 6));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 use footwork::kernels::termination;
 use footwork::kernels::locomotion::advance_and_reward;
 use footwork::env::locomotion::kernel_params::KernelParams;
-use footwork::env::locomotion::task::{Arrival, Reward};
+use footwork::env::locomotion::task::Reward;
 use footwork::env::locomotion::{Obstacles, Task};
 
 const ENVS: usize = 2000;
@@ -244,9 +244,9 @@ fn every_switch_of_the_reward_has_its_weight() {
     assert_eq!(of(without), [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     let all = Obstacles {
         reward: Reward::Progress,
-        hit_shift: true,
-        collision: -5.0,
-        arrival: Arrival::Continue,
+        hit_reward_is_penalty: true,
+        collision_reward: -5.0,
+        success_is_terminal: false,
         ..paper
     };
     assert_eq!(of(all), [0.0, 4.0, 1.0, 1.0, 10.0, -5.0]);

@@ -120,7 +120,7 @@ impl Pair {
                 at(state_f32::TARGET_X) - at(state_f32::X),
                 at(state_f32::TARGET_Z) - at(state_f32::Z),
             );
-            let beyond = (x.hypot(z) - Plane::default().reach).abs();
+            let beyond = (x.hypot(z) - Plane::default().success_radius).abs();
             assert!(
                 beyond <= 2.0 * Bar::of(on, env).place,
                 "environment {env}: {beyond} m"

@@ -1,7 +1,7 @@
 //! The parameters of every kernel, for a task on a level at one moment of a run.
 
 use super::EnvConfig;
-use super::task::{LEVELS, Motion, Reward, LocomotionTask};
+use super::task::{LEVELS, Reward, SpeedDistribution, LocomotionTask};
 use crate::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, CELLS, MAP_OBS_DIM};
 use crate::kernels::termination;
 use crate::kernels::locomotion::{obstacle_collision, hits, observe, build_query, reset, spawn_obstacles, rasterize_maps, advance_and_reward, episode_stats, move_obstacles};
@@ -61,7 +61,7 @@ impl KernelParams {
         obstacle_collision::Params {
             envs: self.envs as u32,
             count: self.task.obstacles() as u32,
-            square: self.square(),
+            square: self.task.arena_half_extent().unwrap_or(0.0),
             frame_time: 1.0 / RATE,
         }
     }
@@ -71,14 +71,7 @@ impl KernelParams {
             envs: self.envs as u32,
             count: self.task.obstacles() as u32,
             time: FRAMES_PER_STEP as f32 / RATE,
-            square: self.square(),
-        }
-    }
-
-    fn square(&self) -> f32 {
-        match self.task {
-            LocomotionTask::Plane(_) => 0.0,
-            LocomotionTask::Obstacles(task) => task.square,
+            square: self.task.arena_half_extent().unwrap_or(0.0),
         }
     }
 
@@ -88,12 +81,12 @@ impl KernelParams {
             LocomotionTask::Plane(task) => advance_and_reward::Params {
                 envs,
                 offset,
-                reach: task.reach,
+                reach: task.success_radius,
                 near: 1.0,
                 progress: 0.0,
                 clear: 0.0,
                 shift: 0.0,
-                bonus: task.bonus,
+                bonus: task.success_bonus,
                 crash: 0.0,
             },
             LocomotionTask::Obstacles(task) => {
@@ -104,13 +97,13 @@ impl KernelParams {
                 advance_and_reward::Params {
                     envs,
                     offset,
-                    reach: task.reach,
+                    reach: task.success_radius,
                     near,
                     progress,
                     clear: task.hit_reward,
-                    shift: f32::from(task.hit_shift),
+                    shift: f32::from(task.hit_reward_is_penalty),
                     bonus: task.success_bonus,
-                    crash: task.collision,
+                    crash: task.collision_reward,
                 }
             }
         }
@@ -120,13 +113,13 @@ impl KernelParams {
     pub fn rasterize_maps(&self, just_reset: bool) -> rasterize_maps::Params {
         let (edge, back) = match self.task {
             LocomotionTask::Plane(_) => (0.0, 0.0),
-            LocomotionTask::Obstacles(task) => (task.edge, task.look_back),
+            LocomotionTask::Obstacles(task) => (task.map_edge_width, task.map_history_s),
         };
         rasterize_maps::Params {
             envs: self.envs as u32,
             count: self.task.obstacles() as u32,
             just_reset: just_reset.into(),
-            square: self.square(),
+            square: self.task.arena_half_extent().unwrap_or(0.0),
             edge,
             back,
         }
@@ -172,21 +165,21 @@ impl KernelParams {
             all: all.into(),
             side_min: task.side_min,
             side_max: task.side_max,
-            square: task.square,
-            margin: task.margin,
+            square: task.arena_half_extent,
+            margin: task.spawn_clearance,
             speed: task.speed * self.level as f32 / (LEVELS - 1) as f32,
-            speed_min: match task.motion {
-                Motion::Same => 1.0,
-                Motion::Uniform => 0.0,
+            speed_min: match task.speed_distribution {
+                SpeedDistribution::Same => 1.0,
+                SpeedDistribution::Uniform => 0.0,
             },
         }
     }
 
     /// New episodes `everywhere` or where this step ended one, with limits up to `spread` early.
     pub fn reset(&self, all: bool, initial_age_jitter: u32) -> reset::Params {
-        let (reach, clear) = match self.task {
-            LocomotionTask::Plane(task) => (task.reach, false),
-            LocomotionTask::Obstacles(task) => (task.reach, task.target_clear),
+        let clear = match self.task {
+            LocomotionTask::Plane(_) => false,
+            LocomotionTask::Obstacles(task) => task.target_clear,
         };
         reset::Params {
             envs: self.envs as u32,
@@ -199,8 +192,8 @@ impl KernelParams {
             all: all.into(),
             max_steps: self.task.max_steps(),
             initial_age_jitter,
-            half_side: self.task.half_side(self.level),
-            reach,
+            half_side: self.task.target_extent(self.level),
+            reach: self.task.success_radius(),
             clear: clear.into(),
         }
     }

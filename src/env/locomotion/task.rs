@@ -16,12 +16,12 @@ pub enum LocomotionTask {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plane {
-    /// Targets are drawn uniformly from a square of twice this side around the start, m.
-    pub half_side: f32,
+    /// Half the side of the square around the start from which targets are drawn uniformly, m.
+    pub target_extent: f32,
     /// The target is reached within this distance, and never drawn within it, m.
-    pub reach: f32,
+    pub success_radius: f32,
     /// Reward for reaching it.
-    pub bonus: f32,
+    pub success_bonus: f32,
     /// Steps after which an episode is truncated.
     pub max_steps: u32,
 }
@@ -29,9 +29,9 @@ pub struct Plane {
 impl Default for Plane {
     fn default() -> Self {
         Plane {
-            half_side: 5.0,
-            reach: 0.5,
-            bonus: 1000.0,
+            target_extent: 5.0,
+            success_radius: 0.5,
+            success_bonus: 1000.0,
             max_steps: 200,
         }
     }
@@ -48,47 +48,48 @@ pub struct Obstacles {
     pub side_min: f32,
     pub side_max: f32,
     /// Half the side of the square around the start in which their centres are drawn and stay, m.
-    pub square: f32,
+    pub arena_half_extent: f32,
     /// Distance they keep from the start when they are drawn, m.
-    pub margin: f32,
+    pub spawn_clearance: f32,
     /// Their speed on the last level, m/s; on the first they stand.
     pub speed: f32,
-    pub motion: Motion,
+    pub speed_distribution: SpeedDistribution,
     /// Half the side of the square of targets around the start, on the first and the last level, m.
-    pub half_side_first: f32,
-    pub half_side_last: f32,
+    pub target_extent_first: f32,
+    pub target_extent_last: f32,
     /// Width over which a cell of the maps rises from 0 to 1 across an obstacle's edge, m. At 0 it is 1
     /// if its centre lies in an obstacle, and else 0 (the paper's binary sensors).
-    pub edge: f32,
+    pub map_edge_width: f32,
     /// The second map shows where obstacles were so long ago, from where the character is now, s. At 0
     /// it is the map of the previous step, as it was seen then (the paper's).
-    pub look_back: f32,
+    pub map_history_s: f32,
     /// Targets lie in no obstacle when they are drawn.
     pub target_clear: bool,
     /// The target is reached within this distance, and never drawn within it, m.
-    pub reach: f32,
+    pub success_radius: f32,
     /// Steps after which an episode is truncated.
     pub max_steps: u32,
     pub reward: Reward,
     /// Reward for asking for positions outside obstacles: times exp(-hits).
     pub hit_reward: f32,
-    /// Times exp(-hits) - 1 instead, so that it is a penalty.
-    pub hit_shift: bool,
+    /// Times exp(-hits) - 1 instead, so that it is never above zero.
+    pub hit_reward_is_penalty: bool,
     /// Reward for reaching the target.
     pub success_bonus: f32,
-    pub arrival: Arrival,
+    /// Nothing follows a success; without it, it is valued as if the episode went on.
+    pub success_is_terminal: bool,
     /// Reward for running into an obstacle.
-    pub collision: f32,
+    pub collision_reward: f32,
     /// Begin on the first level and rise; without it all is on the last level.
     pub curriculum: bool,
     /// Success at which a level is passed.
-    pub pass: f32,
+    pub promotion_success: f32,
 }
 
 /// Speeds of obstacles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Motion {
+pub enum SpeedDistribution {
     /// All at the level's speed.
     Same,
     /// Each at its own, drawn uniformly up to the level's.
@@ -105,16 +106,6 @@ pub enum Reward {
     Progress,
 }
 
-/// What an arrival is worth besides its bonus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Arrival {
-    /// Nothing follows.
-    Terminal,
-    /// Valued as if the walk went on.
-    Continue,
-}
-
 /// Reward a metre.
 pub const PROGRESS: f32 = 4.0;
 /// Levels of the curriculum; the last is the hardest.
@@ -126,45 +117,45 @@ impl Obstacles {
         count: 100,
         side_min: 0.5,
         side_max: 3.0,
-        square: 10.0,
-        margin: 0.5,
+        arena_half_extent: 10.0,
+        spawn_clearance: 0.5,
         speed: 0.5,
-        motion: Motion::Same,
-        half_side_first: 2.5,
-        half_side_last: 5.0,
-        edge: 0.0,
-        look_back: 0.0,
+        speed_distribution: SpeedDistribution::Same,
+        target_extent_first: 2.5,
+        target_extent_last: 5.0,
+        map_edge_width: 0.0,
+        map_history_s: 0.0,
         target_clear: false,
-        reach: 0.5,
+        success_radius: 0.5,
         max_steps: 1000,
         reward: Reward::Paper,
         hit_reward: 1.0,
-        hit_shift: false,
+        hit_reward_is_penalty: false,
         success_bonus: 10.0,
-        arrival: Arrival::Terminal,
-        collision: 0.0,
+        success_is_terminal: true,
+        collision_reward: 0.0,
         curriculum: true,
-        pass: 0.4,
+        promotion_success: 0.4,
     };
 
     /// The reading of the paper's reward that can be learned from: as printed, standing about pays
     /// (`BENCHMARKS.md` compares them).
     pub const PAPER: Obstacles = Obstacles {
         target_clear: true,
-        hit_shift: true,
-        arrival: Arrival::Continue,
+        hit_reward_is_penalty: true,
+        success_is_terminal: false,
         ..Self::PRINTED
     };
 
     /// What trains best.
     pub const FAST: Obstacles = Obstacles {
         target_clear: true,
-        edge: 0.375,
-        look_back: 0.2,
+        map_edge_width: 0.375,
+        map_history_s: 0.2,
         reward: Reward::Progress,
         hit_reward: 0.1,
-        hit_shift: true,
-        collision: -10.0,
+        hit_reward_is_penalty: true,
+        collision_reward: -10.0,
         ..Self::PRINTED
     };
 }
@@ -181,6 +172,22 @@ impl LocomotionTask {
     /// Whether an observation has obstacle maps.
     pub fn has_maps(&self) -> bool {
         matches!(self, LocomotionTask::Obstacles(_))
+    }
+
+    /// Half the side of the square that obstacles and targets keep to, m. None on a plane without end.
+    pub fn arena_half_extent(&self) -> Option<f32> {
+        match self {
+            LocomotionTask::Plane(_) => None,
+            LocomotionTask::Obstacles(obstacles) => Some(obstacles.arena_half_extent),
+        }
+    }
+
+    /// Distance within which the target is reached, m.
+    pub fn success_radius(&self) -> f32 {
+        match self {
+            LocomotionTask::Plane(plane) => plane.success_radius,
+            LocomotionTask::Obstacles(obstacles) => obstacles.success_radius,
+        }
     }
 
     /// Obstacles of an environment.
@@ -204,31 +211,31 @@ impl LocomotionTask {
             LocomotionTask::Plane(_) => None,
             LocomotionTask::Obstacles(obstacles) => {
                 let first = if obstacles.curriculum { 0 } else { LEVELS - 1 };
-                Some(Curriculum::new(LEVELS, first, obstacles.pass))
+                Some(Curriculum::new(LEVELS, first, obstacles.promotion_success))
             }
         }
     }
 
     /// Half the side of the square of targets on a level, m.
-    pub fn half_side(&self, level: u32) -> f32 {
+    pub fn target_extent(&self, level: u32) -> f32 {
         match self {
-            LocomotionTask::Plane(plane) => plane.half_side,
+            LocomotionTask::Plane(plane) => plane.target_extent,
             LocomotionTask::Obstacles(obstacles) => {
-                let (first, last) = (obstacles.half_side_first, obstacles.half_side_last);
+                let (first, last) = (obstacles.target_extent_first, obstacles.target_extent_last);
                 first + (last - first) * level as f32 / (LEVELS - 1) as f32
             }
         }
     }
 
-    /// Ends after which the value of the last real state goes on, `1 << end` each.
+    /// Terminations after which the value of the final observation goes on, `1 << termination` each.
     pub fn bootstrap(&self) -> u32 {
-        let arrival = match self {
-            LocomotionTask::Obstacles(obstacles) => obstacles.arrival,
-            LocomotionTask::Plane(_) => Arrival::Terminal,
+        let success_is_terminal = match self {
+            LocomotionTask::Plane(_) => true,
+            LocomotionTask::Obstacles(obstacles) => obstacles.success_is_terminal,
         };
-        match arrival {
-            Arrival::Terminal => 1 << termination::TRUNCATED,
-            Arrival::Continue => 1 << termination::TRUNCATED | 1 << termination::SUCCESS,
+        match success_is_terminal {
+            true => 1 << termination::TRUNCATED,
+            false => 1 << termination::TRUNCATED | 1 << termination::SUCCESS,
         }
     }
 }

@@ -17,20 +17,20 @@ pub struct Ppo {
     /// Environments stepped together.
     pub envs: usize,
     /// Steps of every environment between two updates.
-    pub horizon: usize,
+    pub rollout_length: usize,
     /// Passes over a rollout.
     pub epochs: usize,
     /// Samples a gradient step.
-    pub minibatch: usize,
+    pub minibatch_size: usize,
     pub learning_rate: f64,
-    /// The learning rate falls linearly to this share of itself over `anneal_steps`.
-    pub final_rate: f64,
+    /// The learning rate falls linearly to this fraction of itself over `anneal_steps`.
+    pub final_lr_fraction: f64,
     /// Environment steps of the fall; 0 for none.
     pub anneal_steps: u64,
     /// After each update the learning rate is divided by 1.5 if the mean KL divergence was over
     /// twice this (down to 1e-5), multiplied by 1.5 if under half of it (up to 1e-2). 0 leaves it
     /// alone.
-    pub target_kl: f64,
+    pub desired_kl: f64,
     pub gamma: f32,
     pub lambda: f32,
     /// Clip range of the probability ratio.
@@ -39,13 +39,13 @@ pub struct Ppo {
     pub value_clip: f64,
     pub value_coefficient: f64,
     pub entropy_coefficient: f64,
-    /// Weight of a penalty on the KL divergence, adapted towards `kl_target`; 0 for none.
+    /// Weight of a penalty on the KL divergence, adapted towards `kl_penalty_target`; 0 for none.
     pub kl_coefficient: f64,
-    pub kl_target: f64,
+    pub kl_penalty_target: f64,
     /// Largest norm of the whole gradient; 0 for no limit.
-    pub max_gradient: f64,
+    pub max_grad_norm: f64,
     /// Starting standard deviation of the actions, in normalised units, as a natural logarithm.
-    pub log_std: f32,
+    pub init_log_std: f32,
     pub network: network::Network,
 }
 
@@ -57,6 +57,6 @@ impl Ppo {
 
     /// Samples of one update.
     pub fn batch(&self) -> usize {
-        self.envs * self.horizon
+        self.envs * self.rollout_length
     }
 }

@@ -96,7 +96,7 @@ impl Learner {
             Device::Cpu => Way::Native,
             Device::Gpu(gpu) => Way::of(gpu, &shape, config),
         };
-        let parameters = vector(&shape.init(seed, config.log_std), &tensors);
+        let parameters = vector(&shape.init(seed, config.init_log_std), &tensors);
         Ok(Learner {
             adam: Adam::new(shape.parameters(), &tensors),
             scale: Scale::new(&tensors),
@@ -177,8 +177,8 @@ impl Learner {
         for epoch in 0..config.epochs {
             let batch = self.reordered(epoch, &batch);
             sums.clear();
-            for start in (0..samples).step_by(config.minibatch) {
-                let length = config.minibatch.min(samples - start);
+            for start in (0..samples).step_by(config.minibatch_size) {
+                let length = config.minibatch_size.min(samples - start);
                 let minibatch = batch.clone().narrow(0, start, length);
                 let study = Study::new(&self.shape, &self.parameters);
                 let terms = terms(config, self.kl_coefficient, length);
@@ -187,7 +187,7 @@ impl Learner {
                     self.parameters.clone(),
                     gradient,
                     self.learning_rate,
-                    config.max_gradient,
+                    config.max_grad_norm,
                 );
                 sums.push(losses);
             }
@@ -214,7 +214,7 @@ impl Learner {
                 batch,
                 old_log_std,
                 &mut self.adam,
-                [self.learning_rate, config.max_gradient],
+                [self.learning_rate, config.max_grad_norm],
                 |samples| terms(config, kl_coefficient, samples),
             );
         }
@@ -236,13 +236,13 @@ impl Learner {
             second: values(self.adam.second.clone()),
             steps: self.adam.steps,
             rate: self.learning_rate,
-            max_norm: config.max_gradient,
+            max_norm: config.max_grad_norm,
         };
         let mut sums = [0.0; LOSSES];
         for epoch in 0..config.epochs {
             let order = self.shuffled(epoch, samples);
             sums = [0.0; LOSSES];
-            for order in order.chunks(config.minibatch) {
+            for order in order.chunks(config.minibatch_size) {
                 let row = |&i: &u32| &batch[i as usize * width..][..width];
                 let rows: Vec<&[f32]> = order.iter().map(row).collect();
                 let terms = terms(config, self.kl_coefficient, rows.len());
@@ -276,26 +276,26 @@ impl Learner {
     /// Adapts learning rate and KL penalty to the KL divergence of the last update.
     pub fn adapt(&mut self, kl: f32, steps: u64, config: &Ppo) {
         let kl = f64::from(kl);
-        if config.target_kl > 0.0 {
-            if kl > 2.0 * config.target_kl {
+        if config.desired_kl > 0.0 {
+            if kl > 2.0 * config.desired_kl {
                 self.learning_rate = (self.learning_rate / 1.5).max(self.learning_rate.min(1e-5));
-            } else if kl < 0.5 * config.target_kl {
+            } else if kl < 0.5 * config.desired_kl {
                 self.learning_rate = (self.learning_rate * 1.5).min(self.learning_rate.max(1e-2));
             }
         }
         if config.anneal_steps > 0 {
             let done = (steps as f64 / config.anneal_steps as f64).min(1.0);
-            let ceiling = config.learning_rate * (1.0 - done * (1.0 - config.final_rate));
-            self.learning_rate = if config.target_kl > 0.0 {
+            let ceiling = config.learning_rate * (1.0 - done * (1.0 - config.final_lr_fraction));
+            self.learning_rate = if config.desired_kl > 0.0 {
                 self.learning_rate.min(ceiling)
             } else {
                 ceiling
             };
         }
         if config.kl_coefficient > 0.0 {
-            if kl > 2.0 * config.kl_target {
+            if kl > 2.0 * config.kl_penalty_target {
                 self.kl_coefficient *= 1.5;
-            } else if kl < 0.5 * config.kl_target {
+            } else if kl < 0.5 * config.kl_penalty_target {
                 self.kl_coefficient *= 0.5;
             }
         }
