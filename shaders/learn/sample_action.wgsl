@@ -1,15 +1,19 @@
-// Draws actions from the policy's Gaussian. One invocation an environment.
+// Draws actions from the policy's Gaussian. One invocation a row.
 //
-// mean      [envs][TRAJECTORY_DIM]   of the policy, normalised
-// log_std   [TRAJECTORY_DIM]
-// action    [envs][TRAJECTORY_DIM]
-// log_prob  [envs]               natural logarithm of the density at the action
+// mean      [..][action]   of the policy
+// log_std   [action]
+// action    [..][action]
+// log_prob  [..]           natural logarithm of the density at the action
 
-#import locomotion_layout
 #import rng
 
 struct Params {
-    envs: u32,
+    rows: u32,
+    // Numbers of an action.
+    action: u32,
+    // The first row in the arrays.
+    row: u32,
+    // The first row's number in its batch.
     first: u32,
     seed: u32,
     step_counter: u32,
@@ -26,14 +30,14 @@ const HALF_LOG_TAU = 0.9189385;
 
 @compute @workgroup_size(64)
 fn sample_action(@builtin(global_invocation_id) id: vec3u) {
-    let env = id.x;
-    if (env >= params.envs) { return; }
+    if (id.x >= params.rows) { return; }
+    let row = params.row + id.x;
     var sum = 0.0;
-    for (var i = 0u; i < TRAJECTORY_DIM; i++) {
-        let noise = gaussian(random4(params.seed, params.first + env, params.step_counter, NOISE + i));
-        let at = env * TRAJECTORY_DIM + i;
+    for (var i = 0u; i < params.action; i++) {
+        let noise = gaussian(random4(params.seed, params.first + id.x, params.step_counter, NOISE + i));
+        let at = row * params.action + i;
         action[at] = mean[at] + exp(log_std[i]) * noise;
         sum -= 0.5 * noise * noise + log_std[i] + HALF_LOG_TAU;
     }
-    log_prob[env] = sum;
+    log_prob[row] = sum;
 }

@@ -39,7 +39,7 @@ const QUERIES = 16u; // an invocation
 struct Four { t: Turned, limit: vec4f, place: vec4u }
 
 fn load_box(box: u32) -> Box {
-    let i = CORNERS * (VELOCITY_DIM + box);
+    let i = CORNERS * (PCA_AXES + box);
     return Box(boxes[i], boxes[i + 1u], boxes[i + 2u], boxes[i + 3u], boxes[i + 4u], boxes[i + 5u]);
 }
 

@@ -5,7 +5,7 @@
 // same one, so each fetch must serve several queries.
 //
 // rows     [leaves * LEAF][QUADS] of vec4   in the index's order; the last number is the candidate
-// boxes    [VELOCITY_DIM + groups + leaves][CORNERS] of vec4   the 12 principal axes, the groups, the leaves
+// boxes    [PCA_AXES + groups + leaves][CORNERS] of vec4   the 12 principal axes, the groups, the leaves
 // codes    [frames] block of every frame; then bytes: [blocks][groups], padded to whole words, and
 //          [blocks][leaves]: the distance of the block's poses to the group's, the leaf's
 // shown    [count]                          frame whose pose a query has
@@ -49,7 +49,7 @@ fn load_query(at: u32) -> Feature {
 }
 
 fn load_box(box: u32) -> Box {
-    let i = CORNERS * (VELOCITY_DIM + box);
+    let i = CORNERS * (PCA_AXES + box);
     return Box(boxes[i], boxes[i + 1u], boxes[i + 2u], boxes[i + 3u], boxes[i + 4u], boxes[i + 5u]);
 }
 

@@ -4,7 +4,7 @@
 const LEAF = 16u;   // rows a leaf
 const GROUP = 16u;  // leaves a group
 const CORNERS = 6u; // vec4s a box: least along each axis, greatest along each
-const VELOCITY_DIM = 6u;    // boxes in whose place the axes lie, before all others
+const PCA_AXES = 6u;    // boxes in whose place the axes lie, before all others
 const ASKED = 13u;  // numbers kept of a query: along the 12 axes, and its slack
 const LANES = 8u;   // lavapipe's; so many invocations compare a query's rows, each with a result of its own
 const FAR = 3.4e38;

@@ -1,8 +1,9 @@
 //! Arrays in host memory or on a GPU, behind one type.
 
 use super::device::Device;
-use super::{Buffer, Gpu};
+use super::{Buffer, tensor};
 use bytemuck::Pod;
+use std::ops::Range;
 
 /// A fixed-length array where a [`Device`] computes: host memory for the CPU, a storage buffer for a
 /// GPU. Code that runs on one device takes the form it needs by [`Array::host`] or [`Array::buffer`];
@@ -84,6 +85,17 @@ impl<T: Pod> Array<T> {
         match (self, device) {
             (Array::Host(values), _) => Ok(values.clone()),
             (Array::Gpu(buffer), Device::Gpu(gpu)) => buffer.read(gpu),
+            (Array::Gpu(_), Device::Cpu) => unreachable!("an array of the CPU was expected"),
+        }
+    }
+}
+
+impl Array {
+    /// A copy of a range of elements, on the same device.
+    pub fn copy(&self, device: &Device, range: Range<usize>) -> Self {
+        match (self, device) {
+            (Array::Host(values), _) => Array::Host(values[range].to_vec()),
+            (Array::Gpu(buffer), Device::Gpu(gpu)) => Array::Gpu(tensor::copy(gpu, buffer, range)),
             (Array::Gpu(_), Device::Cpu) => unreachable!("an array of the CPU was expected"),
         }
     }

@@ -8,6 +8,7 @@ use burn_cubecl::CubeDevice;
 use burn_cubecl::kernel::into_contiguous;
 use burn_cubecl::tensor::CubeTensor;
 use cubecl::client::Client;
+use std::ops::Range;
 
 /// The compute client behind a wgpu tensor device.
 pub(super) fn client_of(device: &Device) -> (Client, CubeDevice) {
@@ -48,4 +49,11 @@ pub fn from_buffer<const D: usize>(
         DType::F32,
     );
     Tensor::from_primitive::<Wgpu>(primitive)
+}
+
+/// A copy of a range of a buffer.
+pub fn copy(gpu: &Gpu, buffer: &Buffer<f32>, range: Range<usize>) -> Buffer<f32> {
+    let tensor: Tensor<1> = from_buffer(gpu, buffer, [buffer.len()]);
+    // A slice alone would be a view of the same memory.
+    to_buffer(tensor.slice([range]).mul_scalar(1.0))
 }

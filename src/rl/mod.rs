@@ -3,13 +3,15 @@
 //! Environments return data; everything that is learning mathematics is here: sampling of actions,
 //! generalised advantage estimation, normalisation, the objectives.
 
+pub mod gae;
 pub mod ppo;
 pub mod rollout;
+pub mod sample_action;
 pub mod value_normalizer;
 
 use crate::container::{Section, SectionError};
 use crate::env::{EnvBatch, Stats};
-use crate::nn::policy::Policy;
+use crate::nn::Policy;
 use anyhow::Result;
 
 /// What an algorithm made of one rollout.

@@ -1,144 +1,89 @@
-//! Lets the policy act for a while and remembers what learning needs.
+//! The columns that a rollout leaves for learning.
 
-use super::ppo::Ppo;
-use crate::nn::policy::Policy;
-use super::value_normalizer::Scale;
-use crate::gpu::Device;
-use crate::env::locomotion::{Batch, Values, World};
+use crate::env::{EnvSpec, Transition, VecEnv};
+use crate::gpu::{Array, Device};
 use anyhow::Result;
-use burn::tensor::Tensor;
-use rayon::prelude::*;
-use std::time::Instant;
 
-/// One rollout, `[horizon * envs]` rows: part after part of the batch, each time-major.
+/// One rollout of a part of the environments, time-major: rows of step 0 first.
 pub struct Rollout {
-    pub observation: Tensor<2>,
-    pub action: Tensor<2>,
-    /// The policy's mean when it acted.
-    pub mean: Tensor<2>,
-    pub log_prob: Tensor<1>,
-    /// The critic's normalised value.
-    pub value: Tensor<1>,
-    /// In units of reward.
-    pub advantage: Tensor<1>,
-    pub target: Tensor<1>,
-    /// Logarithm of the standard deviation the actions were drawn with.
-    pub log_std: Tensor<1>,
-    /// Seconds spent in the networks.
-    pub act_s: f64,
-    /// Seconds spent in the worlds.
-    pub simulate_s: f64,
+    pub spec: EnvSpec,
+    /// Steps of every environment.
+    pub steps: usize,
+    /// `[steps][rows][observation]`; normalised once it has been played, where observations are.
+    pub observation: Array,
+    /// `[steps][rows][action]`
+    pub action: Array,
+    /// `[steps][rows][action]`, the policy's mean when it acted.
+    pub mean: Array,
+    /// `[2][steps][rows]`: logarithm of the action's density, then the critic's normalised output.
+    pub log_prob_and_value: Array,
+    /// `[steps][rows]`
+    pub reward: Array,
+    /// `[steps][rows]`, see [`crate::env::termination`].
+    pub termination: Array<u32>,
+    /// `[final_steps][rows][observation]`
+    pub final_observation: Array,
+    /// `[rows][observation]`, after the last step.
+    pub next_observation: Array,
+    /// `[2][steps][rows]`: advantage and return, in units of reward.
+    pub advantage_and_return: Array,
 }
 
 impl Rollout {
-    /// One after another.
-    fn join(mut parts: Vec<Rollout>) -> Rollout {
-        if parts.len() == 1 {
-            return parts.remove(0);
-        }
-        fn joined<const D: usize>(parts: &[Rollout], of: fn(&Rollout) -> &Tensor<D>) -> Tensor<D> {
-            Tensor::cat(parts.iter().map(|part| of(part).clone()).collect(), 0)
-        }
-        let seconds = |of: fn(&Rollout) -> f64| parts.iter().map(of).sum();
+    /// Columns for `steps` steps of environments on `device`.
+    pub fn new(device: &Device, spec: &EnvSpec, steps: usize) -> Self {
+        let (rows, observation) = (spec.rows(), spec.observation.dim());
+        let samples = steps * rows;
+        let zeros = |len: usize| Array::zeroed(device, len);
         Rollout {
-            observation: joined(&parts, |part| &part.observation),
-            action: joined(&parts, |part| &part.action),
-            mean: joined(&parts, |part| &part.mean),
-            log_prob: joined(&parts, |part| &part.log_prob),
-            value: joined(&parts, |part| &part.value),
-            advantage: joined(&parts, |part| &part.advantage),
-            target: joined(&parts, |part| &part.target),
-            log_std: parts[0].log_std.clone(),
-            act_s: seconds(|part| part.act_s),
-            simulate_s: seconds(|part| part.simulate_s),
+            spec: *spec,
+            steps,
+            observation: zeros(samples * observation),
+            action: zeros(samples * spec.action),
+            mean: zeros(samples * spec.action),
+            log_prob_and_value: zeros(2 * samples),
+            reward: zeros(samples),
+            termination: Array::zeroed(device, samples),
+            final_observation: zeros(spec.final_steps(steps) * rows * observation),
+            next_observation: zeros(rows * observation),
+            advantage_and_return: zeros(2 * samples),
+        }
+    }
+
+    /// Samples of all steps.
+    pub fn samples(&self) -> usize {
+        self.steps * self.spec.rows()
+    }
+
+    /// Plays one step of the environments whose actions are known.
+    pub fn step(&mut self, env: &mut dyn VecEnv, step: usize) {
+        let at = step * self.spec.rows() * self.spec.action;
+        let transition = Transition {
+            step,
+            reward: &mut self.reward,
+            termination: &mut self.termination,
+            final_observation: &mut self.final_observation,
+        };
+        env.step(&self.action, at, transition);
+    }
+
+    /// Writes the environments' present observation into the row of a step, or behind the last.
+    pub fn observe(&mut self, env: &mut dyn VecEnv, step: usize) {
+        let at = step * self.spec.rows() * self.spec.observation.dim();
+        match step < self.steps {
+            true => env.observe(&mut self.observation, at),
+            false => env.observe(&mut self.next_observation, 0),
         }
     }
 }
 
-/// Steps all worlds `horizon` times, the batch's parts one after another or at once. Their seconds
-/// are shares of the time that all took together.
+/// Refuses rollouts that one buffer of `device` cannot hold.
 ///
 /// # Errors
-/// The device was lost.
-pub fn collect(
-    batch: &mut Batch,
-    policy: &Policy,
-    scale: &Scale,
-    config: &Ppo,
-    device: &Device,
-) -> Result<Rollout> {
-    let begin = Instant::now();
-    let parts = batch.parts.par_iter_mut();
-    let parts = parts.map(|world| play(&mut **world, policy, scale, config, device));
-    let mut rollout = Rollout::join(parts.collect::<Result<_>>()?);
-    let share = begin.elapsed().as_secs_f64() / (rollout.act_s + rollout.simulate_s);
-    rollout.act_s *= share;
-    rollout.simulate_s *= share;
-    Ok(rollout)
-}
-
-/// Steps worlds `horizon` times.
-fn play(
-    world: &mut dyn World,
-    policy: &Policy,
-    scale: &Scale,
-    config: &Ppo,
-    device: &Device,
-) -> Result<Rollout> {
-    let (mut observations, mut actions, mut means, mut log_probs) =
-        (vec![], vec![], vec![], vec![]);
-    let mut acting_share = 0.0;
-    let begin = Instant::now();
-    for step in 0..config.rollout_length {
-        // A GPU only queues what it is asked for; the first step of a rollout waits for it, to
-        // see how the time of all divides.
-        let clock = || -> Result<Instant> {
-            if step == 0 {
-                device.sync()?;
-            }
-            Ok(Instant::now())
-        };
-        let start = clock()?;
-        let observation = world.observe();
-        let seen = clock()?;
-        let mean = policy.mean(observation.clone());
-        let (action, log_prob) = world.act(mean.clone(), policy.log_std.clone());
-        let acted = clock()?;
-        world.step(action.clone());
-        if step == 0 {
-            let total = (clock()? - start).as_secs_f64();
-            acting_share = (acted - seen).as_secs_f64() / total.max(1e-9);
-        }
-        device.pace()?;
-        observations.push(observation);
-        actions.push(action);
-        means.push(mean);
-        log_probs.push(log_prob);
-    }
-    device.sync()?;
-    let stepped = Instant::now();
-    let observation = Tensor::cat(observations, 0);
-    // The critic does not act: one large batch is quicker than many small ones.
-    let value = policy.value(observation.clone());
-    let values = Values {
-        observed: value.clone(),
-        next: policy.value(world.observe()),
-        last: policy.value(world.last()),
-        scale: scale.mean_and_deviation(),
-    };
-    let (advantage, target) = world.judge(values, config.gamma, config.lambda);
-    device.sync()?;
-    let stepping = (stepped - begin).as_secs_f64();
-    Ok(Rollout {
-        observation,
-        action: Tensor::cat(actions, 0),
-        mean: Tensor::cat(means, 0),
-        log_prob: Tensor::cat(log_probs, 0),
-        value,
-        advantage,
-        target,
-        log_std: policy.log_std.clone(),
-        act_s: stepping * acting_share + stepped.elapsed().as_secs_f64(),
-        simulate_s: stepping * (1.0 - acting_share),
-    })
+/// Says what is too large and by how much.
+pub fn check_fits(device: &Device, spec: &EnvSpec, steps: usize) -> Result<()> {
+    let numbers = steps * spec.rows() * spec.observation.dim();
+    device
+        .holds("observations of an update", numbers)
+        .map_err(|error| anyhow::anyhow!("{error}: use a smaller --envs or ppo.rollout_length"))
 }

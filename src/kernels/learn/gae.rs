@@ -1,19 +1,20 @@
-//! Generalised advantage estimation. Shader: `shaders/learn/gae.wgsl`.
+//! Generalised advantage estimation (Schulman et al. 2016, equation 16). Shader:
+//! `shaders/learn/gae.wgsl`.
 
-use crate::kernels::termination;
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};
+use crate::kernels::termination;
 
 crate::shader_params! {
     pub struct Params for gae {
-        pub envs: u32,
+        pub rows: u32,
         /// Length of the rollout.
         pub steps: u32,
         pub gamma: f32,
         pub lambda: f32,
-        /// Ends after which the value of the last real state goes on, `1 << end`.
+        /// Terminations after which the value of the final observation goes on, `1 << termination`.
         pub bootstrap: u32,
-        /// Steps of `final_value`: 1 if no environment has two bootstrapped ends in the rollout.
+        /// Steps of `final_value`: 1 if no row has two bootstrapped terminations in the rollout.
         pub final_steps: u32,
     }
 }
@@ -22,54 +23,57 @@ pub fn launch(
     gpu: &Gpu,
     reward: &Buffer<f32>,
     termination: &Buffer<u32>,
-    value: &Buffer<f32>,
+    log_prob_and_value: &Buffer<f32>,
     next_value: &Buffer<f32>,
     final_value: &Buffer<f32>,
     scale: &Buffer<f32>,
-    advantage: &Buffer<f32>,
-    target_value: &Buffer<f32>,
+    advantage_and_return: &Buffer<f32>,
     params: &Params,
 ) {
-    let groups = groups(&shader::GAE, params.envs as usize);
-    let buffers: [&dyn crate::gpu::buffer::Argument; 8] = [
-        reward,
-        termination,
-        value,
-        next_value,
-        final_value,
-        scale,
-        advantage,
-        target_value,
-    ];
-    gpu.launch(&shader::GAE, groups, &buffers, params);
+    let groups = groups(&shader::GAE, params.rows as usize);
+    gpu.launch(
+        &shader::GAE,
+        groups,
+        &[
+            reward,
+            termination,
+            log_prob_and_value,
+            next_value,
+            final_value,
+            scale,
+            advantage_and_return,
+        ],
+        params,
+    );
 }
 
 pub fn twin(
     reward: &[f32],
     termination: &[u32],
-    value: &[f32],
+    log_prob_and_value: &[f32],
     next_value: &[f32],
     final_value: &[f32],
     scale: &[f32],
-    advantage: &mut [f32],
-    target_value: &mut [f32],
+    advantage_and_return: &mut [f32],
     params: &Params,
 ) {
-    let envs = params.envs as usize;
-    let state_f32 = |value: f32| value * scale[1] + scale[0];
-    for env in 0..envs {
-        let (mut after, mut sum) = (real(next_value[env]), 0.0);
+    let rows = params.rows as usize;
+    let samples = rows * params.steps as usize;
+    let value = &log_prob_and_value[samples..];
+    let denormalized = |value: f32| value * scale[1] + scale[0];
+    for row in 0..rows {
+        let (mut after, mut sum) = (denormalized(next_value[row]), 0.0);
         for step in (0..params.steps as usize).rev() {
-            let at = step * envs + env;
+            let at = step * rows + row;
             if termination[at] != termination::RUNNING {
-                let last = final_value[if params.final_steps == 1 { env } else { at }];
+                let last = final_value[if params.final_steps == 1 { row } else { at }];
                 let goes_on = params.bootstrap >> termination[at] & 1 == 1;
-                (after, sum) = (if goes_on { real(last) } else { 0.0 }, 0.0);
+                (after, sum) = (if goes_on { denormalized(last) } else { 0.0 }, 0.0);
             }
-            let now = real(value[at]);
+            let now = denormalized(value[at]);
             sum = reward[at] + params.gamma * after - now + params.gamma * params.lambda * sum;
-            advantage[at] = sum;
-            target_value[at] = sum + now;
+            advantage_and_return[at] = sum;
+            advantage_and_return[samples + at] = sum + now;
             after = now;
         }
     }

@@ -1,14 +1,18 @@
-//! Draws actions from the policy's Gaussian. Shader: `shaders/learn/act.wgsl`.
+//! Actions drawn from the policy's Gaussian. Shader: `shaders/learn/sample_action.wgsl`.
 
-use crate::kernels::rng::{gaussian, random4};
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};
-use crate::motion::features::TRAJECTORY_DIM;
+use crate::kernels::rng::{gaussian, random4};
 
 crate::shader_params! {
     pub struct Params for sample_action {
-        pub envs: u32,
-        /// The first one's number in its batch: random numbers are drawn by it.
+        /// Rows that act.
+        pub rows: u32,
+        /// Numbers of an action.
+        pub action: u32,
+        /// Their first row in the arrays.
+        pub row: u32,
+        /// Their first row's number in its batch: random numbers are drawn by it.
         pub first: u32,
         pub seed: u32,
         /// Steps of the run so far: the random numbers' counter.
@@ -27,7 +31,7 @@ pub fn launch(
     log_prob: &Buffer<f32>,
     params: &Params,
 ) {
-    let groups = groups(&shader::SAMPLE_ACTION, params.envs as usize);
+    let groups = groups(&shader::SAMPLE_ACTION, params.rows as usize);
     gpu.launch(
         &shader::SAMPLE_ACTION,
         groups,
@@ -44,20 +48,22 @@ pub fn twin(
     params: &Params,
 ) {
     let std: Vec<f32> = log_std.iter().map(|log| log.exp()).collect();
-    for (env, log_prob) in log_prob.iter_mut().enumerate().take(params.envs as usize) {
+    let (width, first) = (params.action as usize, params.row as usize);
+    for row in 0..params.rows {
         let mut sum = 0.0;
-        for i in 0..TRAJECTORY_DIM {
+        let at = (first + row as usize) * width;
+        for i in 0..width {
+            let stream = NOISE + i as u32;
             let bits = random4(
                 params.seed,
-                params.first + env as u32,
+                params.first + row,
                 params.step_counter,
-                NOISE + i as u32,
+                stream,
             );
             let noise = gaussian(bits);
-            let at = env * TRAJECTORY_DIM + i;
-            action[at] = mean[at] + std[i] * noise;
+            action[at + i] = mean[at + i] + std[i] * noise;
             sum -= 0.5 * noise * noise + log_std[i] + HALF_LOG_TAU;
         }
-        *log_prob = sum;
+        log_prob[first + row as usize] = sum;
     }
 }

@@ -1,13 +1,14 @@
 //! Proximal policy optimisation (Schulman et al. 2017).
 //!
-//! [`network`] is the form of the networks, of [`layer`]s, [`policy`] holds them, [`rollout`] lets them
-//! act, [`update`] improves them by the gradients of a [`loss`] with [`adam`], [`scale`] keeps the
-//! critic's targets near one. The networks run, and learn, by kernels of our own on the CPU ([`native`]); on a
-//! GPU by launches of our own where all layers are dense (`launched`), else in burn's tensors.
+//! [`Ppo`] holds what may be chosen, [`loss`] is the objective of a sample, [`learner`] lets the
+//! policy act and improves it.
 
+mod batch;
+pub mod learner;
 pub mod loss;
-pub mod update;
 
+use crate::nn::network::NetworkConfig;
+pub use learner::PpoLearner;
 use serde::{Deserialize, Serialize};
 
 /// Everything that may be chosen about learning. Rewards and returns are in the task's units.
@@ -18,9 +19,9 @@ pub struct Ppo {
     pub envs: usize,
     /// Steps of every environment between two updates.
     pub rollout_length: usize,
-    /// Passes over a rollout.
+    /// Times that an update goes over its rollout.
     pub epochs: usize,
-    /// Samples a gradient step.
+    /// Samples of a gradient step.
     pub minibatch_size: usize,
     pub learning_rate: f64,
     /// The learning rate falls linearly to this fraction of itself over `anneal_steps`.
@@ -46,16 +47,13 @@ pub struct Ppo {
     pub max_grad_norm: f64,
     /// Starting standard deviation of the actions, in normalised units, as a natural logarithm.
     pub init_log_std: f32,
-    pub network: network::Network,
+    /// Whether observations are normalised by their running mean and standard deviation.
+    pub normalize_observations: bool,
+    pub network: NetworkConfig,
 }
 
 impl Ppo {
-    /// All choices as TOML text, to compare runs by.
-    pub fn to_toml(&self) -> String {
-        toml::to_string(self).unwrap_or_default()
-    }
-
-    /// Samples of one update.
+    /// Samples of one update of environments with one agent each.
     pub fn batch(&self) -> usize {
         self.envs * self.rollout_length
     }

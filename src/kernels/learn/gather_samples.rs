@@ -1,0 +1,93 @@
+//! Samples of a rollout in the order of an epoch, one a row, as the objective reads them. Shader:
+//! `shaders/learn/gather_samples.wgsl`.
+
+use super::rollout_moments::scale;
+use crate::gpu::{Buffer, Gpu, shader};
+
+crate::shader_params! {
+    pub struct Params for gather_samples {
+        pub samples: u32,
+        /// Numbers of an observation, and of an action.
+        pub observation: u32,
+        pub action: u32,
+    }
+}
+
+/// Scalars at the end of a row: log probability, normalised advantage, normalised return, the
+/// critic's old output in the new normalisation.
+pub const SCALARS: usize = 4;
+/// Least standard deviation of the advantages.
+const MIN_STD: f32 = 1e-6;
+
+/// Numbers of a row: observation, action, mean, scalars.
+pub fn width(observation: usize, action: usize) -> usize {
+    observation + 2 * action + SCALARS
+}
+
+pub fn launch(
+    gpu: &Gpu,
+    order: &Buffer<u32>,
+    observation: &Buffer<f32>,
+    action: &Buffer<f32>,
+    mean: &Buffer<f32>,
+    log_prob_and_value: &Buffer<f32>,
+    advantage_and_return: &Buffer<f32>,
+    scale: &Buffer<f32>,
+    samples: &Buffer<f32>,
+    params: &Params,
+) {
+    let groups = [params.samples.min(GROUPS), params.samples.div_ceil(GROUPS), 1];
+    gpu.launch(
+        &shader::GATHER_SAMPLES,
+        groups,
+        &[
+            order,
+            observation,
+            action,
+            mean,
+            log_prob_and_value,
+            advantage_and_return,
+            scale,
+            samples,
+        ],
+        params,
+    );
+}
+
+/// Workgroups along x: WebGPU launches no more in a dimension.
+const GROUPS: u32 = 65_535;
+
+pub fn twin(
+    order: &[u32],
+    observation: &[f32],
+    action: &[f32],
+    mean: &[f32],
+    log_prob_and_value: &[f32],
+    advantage_and_return: &[f32],
+    scale: &[f32],
+    samples: &mut [f32],
+    params: &Params,
+) {
+    let count = params.samples as usize;
+    let (seen, acted) = (params.observation as usize, params.action as usize);
+    let (log_prob, value) = log_prob_and_value.split_at(count);
+    let (advantage, target) = advantage_and_return.split_at(count);
+    let [old_mean, old_std, new_mean, new_std] = std::array::from_fn(|i| scale[i]);
+    let rows = samples.chunks_exact_mut(width(seen, acted));
+    for (row, &from) in rows.zip(order) {
+        let from = from as usize;
+        let (row_observation, row) = row.split_at_mut(seen);
+        let (row_action, row) = row.split_at_mut(acted);
+        let (row_mean, row_scalars) = row.split_at_mut(acted);
+        row_observation.copy_from_slice(&observation[from * seen..][..seen]);
+        row_action.copy_from_slice(&action[from * acted..][..acted]);
+        row_mean.copy_from_slice(&mean[from * acted..][..acted]);
+        let centered = advantage[from] - scale[scale::ADVANTAGE_MEAN];
+        row_scalars.copy_from_slice(&[
+            log_prob[from],
+            centered / (scale[scale::ADVANTAGE_STD] + MIN_STD),
+            (target[from] - new_mean) / new_std,
+            (value[from] * old_std + old_mean - new_mean) / new_std,
+        ]);
+    }
+}

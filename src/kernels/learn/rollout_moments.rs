@@ -1,0 +1,84 @@
+//! What normalises the samples of a rollout. Shader: `shaders/learn/rollout_moments.wgsl`.
+
+use crate::gpu::{Buffer, Gpu, shader};
+
+crate::shader_params! {
+    pub struct Params for rollout_moments {
+        pub samples: u32,
+        /// Weight of this rollout in the running moments of the returns.
+        pub weight: f32,
+    }
+}
+
+/// Fields of `scale`.
+pub mod scale {
+    /// Mean and standard deviation that the critic's outputs of the rollout are in.
+    pub const OLD_MEAN: usize = 0;
+    pub const OLD_STD: usize = 1;
+    /// Those of the running moments with this rollout's returns taken in.
+    pub const NEW_MEAN: usize = 2;
+    pub const NEW_STD: usize = 3;
+    /// Of the advantages.
+    pub const ADVANTAGE_MEAN: usize = 4;
+    pub const ADVANTAGE_STD: usize = 5;
+    /// 1 - variance of the critic's error / variance of its target.
+    pub const EXPLAINED_VARIANCE: usize = 6;
+    pub const FIELDS: usize = 7;
+}
+
+/// Least standard deviation of the returns.
+const MIN_STD: f64 = 1e-3;
+
+pub fn launch(
+    gpu: &Gpu,
+    log_prob_and_value: &Buffer<f32>,
+    advantage_and_return: &Buffer<f32>,
+    moments: &Buffer<f32>,
+    scale: &Buffer<f32>,
+    params: &Params,
+) {
+    gpu.launch(
+        &shader::ROLLOUT_MOMENTS,
+        [1, 1, 1],
+        &[log_prob_and_value, advantage_and_return, moments, scale],
+        params,
+    );
+}
+
+/// `moments`: running mean and mean square of the returns. `scale` comes with the old mean and
+/// standard deviation, and leaves with all fields.
+pub fn twin(
+    log_prob_and_value: &[f32],
+    advantage_and_return: &[f32],
+    moments: &mut [f32],
+    scale: &mut [f32],
+    params: &Params,
+) {
+    let samples = params.samples as usize;
+    let value = &log_prob_and_value[samples..][..samples];
+    let (advantage, target) = advantage_and_return.split_at(samples);
+    let mean = |of: &dyn Fn(usize) -> f64| (0..samples).map(of).sum::<f64>() / samples as f64;
+    let variance = |of: &dyn Fn(usize) -> f64| {
+        let center = mean(of);
+        mean(&|i| (of(i) - center).powi(2))
+    };
+    let target = |i: usize| f64::from(target[i]);
+    let (old_mean, old_std) = (scale[scale::OLD_MEAN], scale[scale::OLD_STD]);
+    let error = |i: usize| target(i) - f64::from(value[i] * old_std + old_mean);
+    scale[scale::EXPLAINED_VARIANCE] =
+        (1.0 - variance(&error) / (variance(&target) + 1e-12)) as f32;
+
+    let weight = f64::from(params.weight);
+    let newest = [mean(&target), mean(&|i| target(i).powi(2))];
+    for (moment, newest) in moments.iter_mut().zip(newest) {
+        *moment = (f64::from(*moment) * (1.0 - weight) + newest * weight) as f32;
+    }
+    let [mean_return, mean_square] = [moments[0], moments[1]].map(f64::from);
+    let spread = (mean_square - mean_return * mean_return).max(MIN_STD * MIN_STD);
+    scale[scale::NEW_MEAN] = moments[0];
+    scale[scale::NEW_STD] = spread.sqrt() as f32;
+
+    let advantage = |i: usize| f64::from(advantage[i]);
+    scale[scale::ADVANTAGE_MEAN] = mean(&advantage) as f32;
+    scale[scale::ADVANTAGE_STD] = variance(&advantage).sqrt() as f32;
+}

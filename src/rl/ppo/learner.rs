@@ -1,0 +1,423 @@
+//! The policy at work: it acts, and learns from what came of it.
+
+use super::Ppo;
+use super::batch::Batch;
+use super::loss::{LossCoefficients, PpoLoss, SUMS};
+use crate::container::{Section, SectionError};
+use crate::env::{EnvBatch, EnvSpec, Stats, VecEnv};
+use crate::gpu::{Array, Device};
+use crate::kernels::learn::rollout_moments::scale;
+use crate::kernels::learn::sample_action;
+use crate::kernels::rng::permutation;
+use crate::nn::{ActorCritic, Adam, Engine, Policy, RunningMeanStd};
+use crate::rl::gae::{Bootstrap, gae};
+use crate::rl::rollout::Rollout;
+use crate::rl::sample_action::sample_action;
+use crate::rl::value_normalizer::ValueNormalizer;
+use crate::rl::{Algorithm, Iteration};
+use anyhow::{Result, bail};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::time::Instant;
+
+/// First random stream of the shuffles.
+const SHUFFLE: u32 = 0x5348_5546;
+/// Factor by which learning rate and KL penalty are adapted.
+const LR_FACTOR: f64 = 1.5;
+/// Range of an adapted learning rate.
+const LR_RANGE: [f64; 2] = [1e-5, 1e-2];
+
+/// PPO with separate networks for actor and critic.
+pub struct PpoLearner {
+    config: Ppo,
+    device: Device,
+    spec: EnvSpec,
+    networks: ActorCritic,
+    engine: Engine,
+    parameters: Array,
+    adam: Adam,
+    value_normalizer: ValueNormalizer,
+    observation_normalizer: Option<RunningMeanStd>,
+    rollouts: Vec<Rollout>,
+    gradient: Array,
+    sums: Array,
+    learning_rate: f64,
+    /// Weight of the KL penalty, if there is one.
+    kl_coefficient: f64,
+    updates: u64,
+    seed: u32,
+}
+
+/// Numbers of the actor and the critic among the engine's networks.
+const ACTOR: usize = 0;
+const CRITIC: usize = 1;
+
+impl PpoLearner {
+    /// A learner for environments of `spec`.
+    ///
+    /// # Errors
+    /// The network does not fit the observation, or the device.
+    pub fn new(config: &Ppo, spec: &EnvSpec, device: &Device, seed: u32) -> Result<Self> {
+        let networks = ActorCritic::new(&config.network, &spec.observation, spec.action)?;
+        let parameters = networks.parameters();
+        let samples = config.rollout_length * spec.rows();
+        let engine = Engine::new(
+            device,
+            networks.networks(),
+            parameters,
+            spec.action + SUMS,
+            samples,
+            config.minibatch_size.min(samples),
+        )?;
+        let normalizer = || RunningMeanStd::new(device, spec.observation.dim());
+        Ok(PpoLearner {
+            parameters: Array::from_slice(device, &networks.init(seed, config.init_log_std)),
+            adam: Adam::new(device, parameters),
+            value_normalizer: ValueNormalizer::new(device),
+            observation_normalizer: config.normalize_observations.then(normalizer),
+            rollouts: Vec::new(),
+            gradient: Array::zeroed(device, parameters),
+            sums: Array::zeroed(device, SUMS),
+            learning_rate: config.learning_rate,
+            kl_coefficient: config.kl_coefficient,
+            updates: 0,
+            seed,
+            config: config.clone(),
+            device: device.clone(),
+            spec: *spec,
+            networks,
+            engine,
+        })
+    }
+
+    /// Plays a rollout of all environments, the batch's parts one after another or at once. Returns
+    /// the seconds spent in the networks and in the environments: fractions of the time that all
+    /// took together.
+    fn collect(&mut self, envs: &mut EnvBatch, log_std: &Array) -> Result<[f64; 2]> {
+        let begin = Instant::now();
+        if self.rollouts.is_empty() {
+            let new = |part: &Box<dyn VecEnv>| {
+                Rollout::new(&self.device, part.spec(), self.config.rollout_length)
+            };
+            self.rollouts = envs.parts.iter().map(new).collect();
+        }
+        let mut rollouts = std::mem::take(&mut self.rollouts);
+        let firsts: Vec<usize> = rollouts
+            .iter()
+            .scan(0, |next, part| {
+                let first = *next;
+                *next += part.spec.rows();
+                Some(first)
+            })
+            .collect();
+        let parts = envs.parts.par_iter_mut().zip(&mut rollouts).zip(firsts);
+        let seconds: Result<Vec<[f64; 2]>> = parts
+            .map(|((env, rollout), first)| self.play(&mut **env, rollout, log_std, first))
+            .collect();
+        let [policy_s, env_s] = seconds?
+            .into_iter()
+            .fold([0.0; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]]);
+        let played_s = begin.elapsed().as_secs_f64();
+
+        let normalizer = self.observation_normalizer.clone();
+        if let Some(running) = &mut self.observation_normalizer {
+            for rollout in &rollouts {
+                running.update(&rollout.observation, rollout.samples());
+            }
+        }
+        rollouts
+            .par_iter_mut()
+            .for_each(|rollout| self.evaluate(rollout, normalizer.as_ref()));
+        self.device.sync()?;
+        self.rollouts = rollouts;
+        let fraction = env_s / (policy_s + env_s).max(1e-9);
+        let env_s = played_s * fraction;
+        Ok([begin.elapsed().as_secs_f64() - env_s, env_s])
+    }
+
+    /// Plays a rollout of a part, whose first row has the number `first` in the batch.
+    fn play(
+        &self,
+        env: &mut dyn VecEnv,
+        rollout: &mut Rollout,
+        log_std: &Array,
+        first: usize,
+    ) -> Result<[f64; 2]> {
+        let (rows, action) = (rollout.spec.rows(), self.spec.action);
+        let begin = Instant::now();
+        let mut policy_fraction = 0.0;
+        let mut seen = Array::zeroed(&self.device, rows * self.spec.observation.dim());
+        for step in 0..rollout.steps {
+            // A GPU only queues what is requested; the first step of a rollout waits for it, to see
+            // how the time of all divides.
+            let clock = || -> Result<Instant> {
+                if step == 0 {
+                    self.device.sync()?;
+                }
+                Ok(Instant::now())
+            };
+            let start = clock()?;
+            rollout.observe(env, step);
+            let observed = clock()?;
+            let (parameters, row) = (&self.parameters, step * rows);
+            let mean = &mut rollout.mean;
+            match &self.observation_normalizer {
+                None => self.engine.forward(
+                    ACTOR,
+                    parameters,
+                    &rollout.observation,
+                    row,
+                    rows,
+                    mean,
+                    row * action,
+                ),
+                Some(normalizer) => {
+                    let at = row * self.spec.observation.dim();
+                    normalizer.normalize(&rollout.observation, at, &mut seen, 0, rows);
+                    let to = row * action;
+                    self.engine
+                        .forward(ACTOR, parameters, &seen, 0, rows, mean, to);
+                }
+            }
+            let params = sample_action::Params {
+                rows: rows as u32,
+                action: action as u32,
+                row: row as u32,
+                first: first as u32,
+                seed: self.seed,
+                step_counter: (self.updates * rollout.steps as u64 + step as u64) as u32,
+            };
+            sample_action(&self.device, log_std, rollout, &params);
+            let acted = clock()?;
+            rollout.step(env, step);
+            if step == 0 {
+                let total = (clock()? - start).as_secs_f64();
+                policy_fraction = (acted - observed).as_secs_f64() / total.max(1e-9);
+            }
+            self.device.pace()?;
+        }
+        rollout.observe(env, rollout.steps);
+        self.device.sync()?;
+        let total = begin.elapsed().as_secs_f64();
+        Ok([policy_fraction, 1.0 - policy_fraction].map(|fraction| total * fraction))
+    }
+
+    /// Normalises a rollout's observations and fills in values, advantages and returns. The critic
+    /// does not act: one large batch is quicker than many small ones.
+    fn evaluate(&self, rollout: &mut Rollout, normalizer: Option<&RunningMeanStd>) {
+        let (rows, samples) = (rollout.spec.rows(), rollout.samples());
+        let final_rows = rows * rollout.spec.final_steps(rollout.steps);
+        if let Some(normalizer) = normalizer {
+            normalizer.normalize_in_place(&mut rollout.observation, samples);
+            normalizer.normalize_in_place(&mut rollout.next_observation, rows);
+            normalizer.normalize_in_place(&mut rollout.final_observation, final_rows);
+        }
+        let value = |observation: &Array, count: usize, out: &mut Array, at: usize| {
+            let parameters = &self.parameters;
+            self.engine
+                .forward(CRITIC, parameters, observation, 0, count, out, at);
+        };
+        let zeros = |len: usize| Array::zeroed(&self.device, len);
+        let mut bootstrap = Bootstrap {
+            next_value: zeros(rows),
+            final_value: zeros(final_rows),
+        };
+        let values = &mut rollout.log_prob_and_value;
+        value(&rollout.observation, samples, values, samples);
+        value(
+            &rollout.next_observation,
+            rows,
+            &mut bootstrap.next_value,
+            0,
+        );
+        value(
+            &rollout.final_observation,
+            final_rows,
+            &mut bootstrap.final_value,
+            0,
+        );
+        let (gamma, lambda) = (self.config.gamma, self.config.lambda);
+        let scale = self.value_normalizer.scale();
+        gae(&self.device, rollout, &bootstrap, scale, gamma, lambda);
+    }
+
+    /// Takes gradient steps on the rollouts. The sums of the last epoch stay on the device.
+    fn learn(&mut self, log_std: &Array) {
+        self.value_normalizer.update(&self.rollouts);
+        let rollouts = std::mem::take(&mut self.rollouts);
+        let device = self.device.clone();
+        let mut batch = Batch::new(&device, &rollouts, self.value_normalizer.scale().clone());
+        let samples = batch.samples();
+        for epoch in 0..self.config.epochs {
+            let stream = SHUFFLE + epoch as u32;
+            batch.begin_epoch(permutation(
+                self.seed,
+                self.updates as u32,
+                stream,
+                samples,
+            ));
+            self.sums = Array::zeroed(&device, SUMS);
+            for start in (0..samples).step_by(self.config.minibatch_size) {
+                let end = samples.min(start + self.config.minibatch_size);
+                self.step(&batch, start..end, log_std);
+            }
+        }
+        self.updates += 1;
+        self.rollouts = rollouts;
+    }
+
+    /// One gradient step on a minibatch.
+    fn step(&mut self, batch: &Batch, samples: Range<usize>, log_std: &Array) {
+        let objective = PpoLoss {
+            action: self.spec.action,
+            log_std: self.networks.log_std(),
+            old_log_std: log_std,
+            coefficients: LossCoefficients {
+                inv_count: 1.0 / samples.len() as f32,
+                ..LossCoefficients::new(&self.config, self.kl_coefficient)
+            },
+        };
+        self.engine.gradient(
+            &self.parameters,
+            batch.rows(),
+            batch.minibatch(samples),
+            &objective,
+            &mut self.gradient,
+            &mut self.sums,
+        );
+        self.adam.step(
+            &mut self.parameters,
+            &self.gradient,
+            self.learning_rate,
+            self.config.max_grad_norm,
+        );
+    }
+
+    /// Adapts learning rate and KL penalty to the KL divergence of the last update.
+    fn adapt(&mut self, kl: f64, steps: u64) {
+        let config = &self.config;
+        if config.desired_kl > 0.0 {
+            let lr = self.learning_rate;
+            if kl > 2.0 * config.desired_kl {
+                self.learning_rate = (lr / LR_FACTOR).max(lr.min(LR_RANGE[0]));
+            } else if kl < 0.5 * config.desired_kl {
+                self.learning_rate = (lr * LR_FACTOR).min(lr.max(LR_RANGE[1]));
+            }
+        }
+        if config.anneal_steps > 0 {
+            let done = (steps as f64 / config.anneal_steps as f64).min(1.0);
+            let ceiling = config.learning_rate * (1.0 - done * (1.0 - config.final_lr_fraction));
+            self.learning_rate = match config.desired_kl > 0.0 {
+                true => self.learning_rate.min(ceiling),
+                false => ceiling,
+            };
+        }
+        if config.kl_coefficient > 0.0 {
+            if kl > 2.0 * config.kl_penalty_target {
+                self.kl_coefficient *= 1.5;
+            } else if kl < 0.5 * config.kl_penalty_target {
+                self.kl_coefficient *= 0.5;
+            }
+        }
+    }
+
+    /// Means over the last epoch, and what else is worth a curve.
+    ///
+    /// # Errors
+    /// The device was lost; or a number is not finite.
+    fn losses(&mut self) -> Result<Vec<(&'static str, f64)>> {
+        let samples: usize = self.rollouts.iter().map(Rollout::samples).sum();
+        let sums = self.sums.read(&self.device)?;
+        let grad_norm = self.adam.grad_norm(&self.device)?;
+        let scale = self.value_normalizer.advance()?;
+        let mean = |i: usize| f64::from(sums[i]) / samples as f64;
+        let losses = vec![
+            ("policy_loss", mean(0)),
+            ("value_loss", mean(1)),
+            ("entropy", mean(2)),
+            ("kl", mean(3)),
+            ("clip_fraction", mean(4)),
+            (
+                "explained_variance",
+                scale[scale::EXPLAINED_VARIANCE].into(),
+            ),
+            ("grad_norm", grad_norm.into()),
+            ("learning_rate", self.learning_rate),
+        ];
+        match losses.iter().find(|(_, value)| !value.is_finite()) {
+            None => Ok(losses),
+            Some((name, value)) => bail!(
+                "learning diverged: the {} of update {} is {value}; checkpoints are from before it, if one \
+                 was due. Try a lower ppo.learning_rate",
+                name.replace('_', " "),
+                self.updates
+            ),
+        }
+    }
+}
+
+impl Algorithm for PpoLearner {
+    fn iterate(&mut self, envs: &mut EnvBatch, steps: u64) -> Result<Iteration> {
+        let begin = Instant::now();
+        let range = self.networks.log_std();
+        let log_std = self.parameters.copy(&self.device, range);
+        let [policy_s, env_s] = self.collect(envs, &log_std)?;
+        self.learn(&log_std);
+        let losses = self.losses()?;
+        let names = envs.stat_names();
+        let mut sums = Array::zeroed(&self.device, names.len());
+        envs.stats(&mut sums);
+        let stats = Stats::new(names, &sums.read(&self.device)?);
+        if let Some((name, sum)) = stats.iter().find(|(_, sum)| !sum.is_finite()) {
+            bail!(
+                "the environments diverged: the sum of {name} in update {} is {sum}",
+                self.updates
+            );
+        }
+        let samples: usize = self.rollouts.iter().map(Rollout::samples).sum();
+        let kl = losses.iter().find(|(name, _)| *name == "kl");
+        self.adapt(kl.map_or(0.0, |(_, kl)| *kl), steps + samples as u64);
+        Ok(Iteration {
+            losses,
+            stats,
+            policy_s,
+            env_s,
+            learn_s: begin.elapsed().as_secs_f64() - policy_s - env_s,
+        })
+    }
+
+    fn policy(&self) -> Result<Policy> {
+        let normalizer = self.observation_normalizer.as_ref();
+        Ok(Policy {
+            config: self.config.network.clone(),
+            observation: self.spec.observation,
+            action: self.spec.action,
+            parameters: self.parameters.read(&self.device)?,
+            normalizer: normalizer
+                .map(|running| running.on_host(&self.device))
+                .transpose()?,
+        })
+    }
+
+    fn save(&self, to: &mut Section) -> Result<()> {
+        to.put("updates", self.updates);
+        to.put_array("rates", &[self.learning_rate, self.kl_coefficient]);
+        self.adam.save(&self.device, to)?;
+        self.value_normalizer.save(to)
+    }
+
+    fn load(&mut self, from: &mut Section, policy: &Policy) -> Result<(), SectionError> {
+        self.updates = from.get("updates")?;
+        let rates: Vec<f64> = from.take_array("rates", 2)?;
+        if !rates.iter().all(|rate| rate.is_finite()) {
+            return Err(SectionError("its rates are not finite".to_string()));
+        }
+        (self.learning_rate, self.kl_coefficient) = (rates[0], rates[1]);
+        self.adam.load(&self.device, from)?;
+        self.value_normalizer.load(from)?;
+        self.parameters = Array::from_slice(&self.device, &policy.parameters);
+        let normalizer = policy.normalizer.as_ref();
+        self.observation_normalizer = normalizer.map(|running| running.on(&self.device));
+        Ok(())
+    }
+}
