@@ -27,8 +27,8 @@ use roxmltree::Document;
 use settings::Settings;
 use std::io::Read;
 use std::path::Path;
-pub use touch::ordered;
-use world::World;
+pub use exclude::ordered;
+use worldbody::World;
 
 pub const MAX_BYTES: u64 = 1 << 20;
 

@@ -21,7 +21,7 @@ use crate::motion::units;
 use anatomy::Anatomy;
 use glam::{Quat, Vec3};
 use limb::{Bend, Hinge};
-use puppet::Puppet;
+use humanoid_joints::Puppet;
 use sole::Sole;
 
 pub type Result<T> = std::result::Result<T, Error>;

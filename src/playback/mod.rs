@@ -20,4 +20,4 @@ pub mod two_bone_ik;
 
 pub use player::Player;
 pub use pose::Pose;
-pub use shown::Shown;
+pub use placed_frame::Shown;

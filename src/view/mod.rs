@@ -15,7 +15,7 @@ pub mod shapes;
 pub mod strip;
 
 pub use camera::Camera;
-pub use canvas::Canvas;
+pub use render_target::Canvas;
 pub use crowd::Crowd;
 pub use renderer::Renderer;
 pub use scene::Scene;

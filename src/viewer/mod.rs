@@ -12,4 +12,4 @@ pub mod app;
 pub mod watch;
 pub mod window;
 
-pub use viewer::Viewer;
+pub use app::Viewer;
