@@ -1,7 +1,7 @@
 //! Arrays in host memory or on a GPU, behind one type.
 
 use super::device::Device;
-use super::{Buffer, tensor};
+use super::Buffer;
 use bytemuck::Pod;
 use std::ops::Range;
 
@@ -95,7 +95,7 @@ impl Array {
     pub fn copy(&self, device: &Device, range: Range<usize>) -> Self {
         match (self, device) {
             (Array::Host(values), _) => Array::Host(values[range].to_vec()),
-            (Array::Gpu(buffer), Device::Gpu(gpu)) => Array::Gpu(tensor::copy(gpu, buffer, range)),
+            (Array::Gpu(buffer), Device::Gpu(gpu)) => Array::Gpu(buffer.copy(gpu, range)),
             (Array::Gpu(_), Device::Cpu) => unreachable!("an array of the CPU was expected"),
         }
     }

@@ -1,6 +1,6 @@
 //! Arrays on the device.
 
-use super::device::Gpu;
+use super::adapter::Gpu;
 use bytemuck::Pod;
 use cubecl::server::Handle;
 use cubecl::wgpu::{AutoCompiler, WgpuServer};

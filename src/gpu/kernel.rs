@@ -2,8 +2,9 @@
 //! operations run in program order on one queue without copies or waits.
 
 use super::buffer::Argument;
-use super::device::Gpu;
+use super::adapter::Gpu;
 use super::shader::Shader;
+pub use super::shader::groups;
 use bytemuck::Pod;
 use cubecl::ir::settings::{Dim3, KernelSettings};
 use cubecl::ir::{AddressType, ElemType, Scope, UIntKind, metadata::Info};
@@ -111,9 +112,4 @@ impl Gpu {
             arguments,
         );
     }
-}
-
-/// Workgroups needed for `items` invocations along x.
-pub fn groups(shader: &Shader, items: usize) -> [u32; 3] {
-    [(items as u32).div_ceil(shader.workgroup[0]), 1, 1]
 }

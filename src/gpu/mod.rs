@@ -1,18 +1,35 @@
 //! The only place that knows wgpu, cubecl and burn's inside.
 //!
 //! - [`device`]: which adapter or processor runs the program;
+//! - [`array`]: arrays of either;
 //! - [`shader`]: the validated text and layout of every shader;
-//! - [`kernel`]: the only launch;
-//! - [`buffer`]: arrays on the device; [`array`]: the same, or in host memory;
-//! - [`tensor`]: the only bridge between buffers and burn's tensors.
+//! - `adapter`: a graphics adapter; `buffer`: arrays on it; `kernel`: the only launch; `tensor`: the
+//!   only bridge between buffers and burn's tensors.
+//!
+//! Without the feature `gpu` there is no adapter, and no value of the types [`Gpu`] and [`Buffer`].
 
 pub mod array;
-pub mod buffer;
 pub mod device;
-pub mod kernel;
 pub mod shader;
+
+#[cfg(feature = "gpu")]
+mod adapter;
+#[cfg(feature = "gpu")]
+pub mod buffer;
+#[cfg(feature = "gpu")]
+pub mod kernel;
+#[cfg(feature = "gpu")]
 pub mod tensor;
 
+#[cfg(not(feature = "gpu"))]
+mod absent;
+
+#[cfg(not(feature = "gpu"))]
+pub use absent::{Argument, Buffer, Gpu, Shared};
+#[cfg(feature = "gpu")]
+pub use adapter::Gpu;
 pub use array::Array;
-pub use buffer::{Buffer, Shared};
-pub use device::{Choice, Device, Gpu};
+#[cfg(feature = "gpu")]
+pub use buffer::{Argument, Buffer, Shared};
+pub use device::{Choice, Device};
+pub use shader::groups;

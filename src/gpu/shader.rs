@@ -14,6 +14,11 @@ pub struct Shader {
     pub params: usize,
 }
 
+/// Workgroups needed for `items` invocations along x.
+pub fn groups(shader: &Shader, items: usize) -> [u32; 3] {
+    [(items as u32).div_ceil(shader.workgroup[0]), 1, 1]
+}
+
 /// Type of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {

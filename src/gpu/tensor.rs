@@ -1,20 +1,12 @@
 //! The only bridge between buffers and burn's tensors. Nothing is copied.
 
 use super::buffer::Buffer;
-use super::device::Gpu;
+use super::Gpu;
 use burn::backend::Wgpu;
-use burn::tensor::{DType, Device, Shape, Tensor};
-use burn_cubecl::CubeDevice;
+use burn::tensor::{DType, Shape, Tensor};
 use burn_cubecl::kernel::into_contiguous;
 use burn_cubecl::tensor::CubeTensor;
-use cubecl::client::Client;
 use std::ops::Range;
-
-/// The compute client behind a wgpu tensor device.
-pub(super) fn client_of(device: &Device) -> (Client, CubeDevice) {
-    let primitive = primitive(Tensor::<1>::zeros([1], device));
-    (primitive.client, primitive.device)
-}
 
 fn primitive<const D: usize>(tensor: Tensor<D>) -> CubeTensor {
     match tensor.try_into_primitive::<Wgpu>() {
@@ -51,9 +43,11 @@ pub fn from_buffer<const D: usize>(
     Tensor::from_primitive::<Wgpu>(primitive)
 }
 
-/// A copy of a range of a buffer.
-pub fn copy(gpu: &Gpu, buffer: &Buffer<f32>, range: Range<usize>) -> Buffer<f32> {
-    let tensor: Tensor<1> = from_buffer(gpu, buffer, [buffer.len()]);
-    // A slice alone would be a view of the same memory.
-    to_buffer(tensor.slice([range]).mul_scalar(1.0))
+impl Buffer<f32> {
+    /// A copy of a range of the values.
+    pub(super) fn copy(&self, gpu: &Gpu, range: Range<usize>) -> Self {
+        let tensor: Tensor<1> = from_buffer(gpu, self, [self.len()]);
+        // A slice alone would be a view of the same memory.
+        to_buffer(tensor.slice([range]).mul_scalar(1.0))
+    }
 }
