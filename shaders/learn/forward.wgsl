@@ -1,28 +1,30 @@
-// Answers to samples, layer after layer. One workgroup a network and BLOCK rows.
+// Outputs of networks, layer after layer. One workgroup a network and BLOCK rows.
 //
-// plan        see network
-// samples     [..][width]                    observations first
+// batch       see network
+// samples     [..][width]                       observations first
 // parameters  [parameters]
-// rows        [blocks][pitch][HALVES] of vec4   what is observed, and what the hidden layers make of it
-// answers     [rows][TRAJECTORY_DIM] of the actor, then [rows] of the critic; or of the one asked
+// rows        [blocks][row_stride][HALVES] of vec4   observations, and the hidden layers' activations
+// outputs     [rows][outputs] of the first network, then of the next
 
-#import locomotion_layout
 #import network
 
 struct Params {
     rows: u32,
     // The first sample.
     start: u32,
+    // Numbers of a sample.
     width: u32,
-    // 0: the actor, or both. 1: the critic.
-    first: u32,
+    // The first network that is evaluated.
+    network: u32,
+    // Index of the first output.
+    out_at: u32,
 }
 
-@group(0) @binding(0) var<storage, read> plan: Plan;
+@group(0) @binding(0) var<storage, read> batch: BatchLayout;
 @group(0) @binding(1) var<storage, read> samples: array<f32>;
 @group(0) @binding(2) var<storage, read> parameters: array<f32>;
 @group(0) @binding(3) var<storage, read_write> rows: array<vec4f>;
-@group(0) @binding(4) var<storage, read_write> answers: array<f32>;
+@group(0) @binding(4) var<storage, read_write> outputs: array<f32>;
 @group(0) @binding(5) var<uniform> params: Params;
 
 // Rows that fill the last block observe nothing.
@@ -37,45 +39,52 @@ fn observe(row: u32, column: u32) -> vec4f {
     );
 }
 
-// Cut where it is 1 in f32, so that the exponential stays finite.
-fn bend(sums: vec4f) -> vec4f {
-    return 1.0 - 2.0 / (exp(2.0 * clamp(sums, vec4f(-9.1), vec4f(9.1))) + 1.0);
+// tanh is cut where it is 1 in f32, so that the exponential stays finite.
+fn activation(sums: vec4f, kind: u32) -> vec4f {
+    if (kind == RELU) { return max(sums, vec4f(0.0)); }
+    if (kind == TANH) { return 1.0 - 2.0 / (exp(2.0 * clamp(sums, vec4f(-9.1), vec4f(9.1))) + 1.0); }
+    return sums;
 }
 
 @compute @workgroup_size(LANES)
 fn forward(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
-    let network = params.first + group.z;
+    let network = params.network + group.z;
     let row = group.x * BLOCK;
     if (row >= params.rows) { return; }
-    let block = group.x * plan.pitch;
-    for (var column = local; column < BASE_OBS_DIM; column += LANES) {
-        let at = (block + plan.places[network].below + column) * HALVES;
+    let block = group.x * batch.row_stride;
+    let first = batch.first_layer[network];
+    let end = batch.first_layer[network + 1u];
+    for (var column = local; column < batch.layer[first].inputs; column += LANES) {
+        let at = (block + batch.layer[first].input_col + column) * HALVES;
         rows[at] = observe(row, column);
         rows[at + 1u] = observe(row + 4u, column);
     }
-    for (var layer = network; layer + 1u < plan.count; layer += 2u) {
-        // What is below has been written by the whole workgroup.
+    let before = batch.outputs_before[network] - batch.outputs_before[params.network];
+    for (var index = first; index < end; index++) {
+        // The inputs have been written by the whole workgroup.
         storageBarrier();
-        let place = plan.places[layer];
-        for (var output = local; output < place.outputs; output += LANES) {
-            let bias = parameters[place.weights + place.inputs * place.outputs + output];
+        let layer = batch.layer[index];
+        for (var output = local; output < layer.outputs; output += LANES) {
+            let bias = parameters[layer.weights + layer.inputs * layer.outputs + output];
             var low = vec4f(bias);
             var high = vec4f(bias);
-            for (var input = 0u; input < place.inputs; input++) {
-                let weight = parameters[place.weights + input * place.outputs + output];
-                let at = (block + place.below + input) * HALVES;
+            for (var input = 0u; input < layer.inputs; input++) {
+                let weight = parameters[layer.weights + input * layer.outputs + output];
+                let at = (block + layer.input_col + input) * HALVES;
                 low += weight * rows[at];
                 high += weight * rows[at + 1u];
             }
-            if (place.bent == 1u) {
-                let at = (block + place.above + output) * HALVES;
-                rows[at] = bend(low);
-                rows[at + 1u] = bend(high);
+            low = activation(low, layer.activation);
+            high = activation(high, layer.activation);
+            if (index + 1u < end) {
+                let at = (block + layer.output_col + output) * HALVES;
+                rows[at] = low;
+                rows[at + 1u] = high;
             } else {
-                let first = group.z * params.rows * TRAJECTORY_DIM;
+                let to = params.out_at + params.rows * before;
                 for (var r = 0u; r < BLOCK; r++) {
                     if (row + r >= params.rows) { break; }
-                    answers[first + (row + r) * place.outputs + output] = select(high[r & 3u], low[r & 3u], r < 4u);
+                    outputs[to + (row + r) * layer.outputs + output] = select(high[r & 3u], low[r & 3u], r < 4u);
                 }
             }
         }

@@ -1,38 +1,44 @@
-// Policy and critic, all of dense layers, side by side; a minibatch on its way through them.
+// Networks of dense layers side by side, and a batch of rows on its way through them.
 //
-// Rows are samples in blocks of BLOCK: [blocks][pitch][BLOCK]. A row is what is observed, once for each
-// network, then the activations of every layer, the actor's before the critic's. In a second array of that
-// form stand the gradients with respect to them, and behind those what the loss adds up: the gradient
-// with respect to log_std, then SUMS sums.
+// Rows lie in blocks of BLOCK: [blocks][row_stride][BLOCK]. A row is the observation, once for each
+// network, then the activations of every hidden layer. A second array of that form holds the gradients
+// with respect to the layers' sums; behind those stand the extras, what the objective adds up:
+// gradients of the parameters behind the networks', then its sums.
 
-struct Place {
-    // Numbers that come in and go out.
+const IDENTITY = 0u;
+const RELU = 1u;
+const TANH = 2u;
+
+struct LayerWords {
     inputs: u32,
     outputs: u32,
     // Where in the parameters its weights [inputs][outputs] begin; its biases [outputs] follow.
     weights: u32,
-    // Columns of what comes in and goes out.
-    below: u32,
-    above: u32,
-    // 1: tanh of the sums. 0: the sums.
-    bent: u32,
+    // Columns of the inputs and of the outputs.
+    input_col: u32,
+    output_col: u32,
+    activation: u32,
 }
 
-struct Plan {
+struct BatchLayout {
     rows: u32,
-    pitch: u32,
-    // The rows are added up in so many pieces of `piece` blocks.
-    pieces: u32,
-    piece: u32,
+    row_stride: u32,
+    // Gradients are summed over so many parts of `split_blocks` blocks.
+    splits: u32,
+    split_blocks: u32,
     parameters: u32,
-    // Layers of both networks, and one without inputs for what the loss adds up.
-    count: u32,
-    // Layer by layer, the actor's before the critic's; the one without inputs last.
-    places: array<Place>,
+    // Sums of the objective.
+    sums: u32,
+    networks: u32,
+    // Layers of all networks, and one without inputs: the extras.
+    layers: u32,
+    // The first layer of each network, and of the one behind the last.
+    first_layer: array<u32, 5>,
+    // Outputs of the networks before each.
+    outputs_before: array<u32, 5>,
+    layer: array<LayerWords>,
 }
 
 const BLOCK = 8u;   // rows, or inputs, an invocation computes at once: each fetch serves so many
 const HALVES = 2u;  // vec4 of a block
 const LANES = 32u;  // invocations of a workgroup, each with an output or an input of a layer
-const SUMS = 5u;    // surrogate, value loss, entropy, KL divergence, samples out of the clip range
-const GROUP = 64u;  // numbers a workgroup of `total` adds up

@@ -1,158 +1,318 @@
-//! Policy and critic on the CPU, by kernels of our own: burn's run convolutions of these sizes, and
-//! many small operations after each other, several times slower.
+//! Networks on the CPU: narrow layers and convolutions by custom kernels, wide layers as products of
+//! matrices.
 //!
-//! A batch is cut into pieces, spread over the cores; a piece goes through a network in chunks that
-//! stay in a core's cache. Pieces and chunks do not depend on how many cores there are, and sums
-//! over them are taken in their order: nor do the results, bit for bit.
+//! A batch is split over the cores; a split goes through a network in chunks that stay in a core's cache.
+//! Splits and chunks do not depend on how many cores there are, and sums over them are taken in their
+//! order: nor do the results, bit for bit. The gradients of narrow layers are summed for each split and
+//! then over the splits; those of wide layers over all rows at once, some rows of the weights a core.
 
-pub mod layers;
-pub mod minibatch_step;
-mod kernels;
-pub mod loss;
+mod layers;
+mod matmul;
+mod microkernel;
 mod tanh;
 
-use super::network::{Net, Place};
-use crate::kernels::locomotion::locomotion_layout::BASE_OBS_DIM;
-use chain::{backward, forward};
+use super::engine::{EngineSize, Rows, SamplesInOrder, Shuffled};
+use super::network::Network;
+use super::objective::{HostBatch, Objective};
+use crate::gpu::Array;
+use layers::is_wide;
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// Samples taken through a network together.
-const CHUNK: usize = 32;
-/// Pieces of a batch of which each has gradients of its own: more would spend more time adding them.
-const PIECES: usize = 8;
+/// Rows taken through a narrow network together, and through one with wide layers.
+const CHUNK_ROWS: usize = 32;
+const WIDE_CHUNK_ROWS: usize = 256;
+/// Splits of a batch of which each has gradients of its own: more would spend more time adding them.
+const GRAD_SPLITS: usize = 8;
+/// Inputs of a wide layer whose weights' gradients are summed together.
+const WIDE_INPUTS: usize = 32;
 
-/// Answers `[n][..]` for observations `[n][width]`.
-pub fn answer(net: &Net<Place>, flat: &[f32], observations: &[f32], width: usize) -> Vec<f32> {
-    let observations: Vec<&[f32]> = observations.chunks_exact(width).collect();
-    let answers = observations.par_chunks(CHUNK).flat_map_iter(|chunk| {
-        let mut pass = Pass::new(net, flat, chunk);
-        pass.hidden.pop().unwrap_or_default()
-    });
-    answers.collect()
+/// Networks over one flat vector, on the CPU.
+pub struct CpuEngine {
+    networks: Vec<Network>,
+    size: EngineSize,
 }
 
-/// Gradient with respect to the network's parameters of a loss that `judge` knows, and every piece's
-/// other sums. `judge` is given rows, the answers to them `[rows][..]` and its sums to add to; it
-/// writes over the answers the loss's gradient with respect to them. A row begins with an observation
-/// of `width` numbers.
-pub fn gradient<S: Send>(
-    net: &Net<Place>,
-    flat: &[f32],
-    rows: &[&[f32]],
-    width: usize,
-    sums: impl Fn() -> S + Sync,
-    judge: impl Fn(&[&[f32]], &mut [f32], &mut S) + Sync,
-) -> (Vec<f32>, Vec<S>) {
-    let transposed = net.map(|place| layers::transpose(&place.layer, &flat[place.weights()]));
-    let span = net.span();
-    let pieces = rows.par_chunks(rows.len().div_ceil(PIECES).max(1));
-    let piece = |rows: &[&[f32]]| {
-        let (mut gradient, mut sums) = (vec![0.0; span.len()], sums());
-        for chunk in rows.chunks(CHUNK) {
-            let observations: Vec<&[f32]> = chunk.iter().map(|row| &row[..width]).collect();
-            let mut pass = Pass::new(net, flat, &observations);
-            let mut answers = pass.hidden.pop().unwrap_or_default();
-            judge(chunk, &mut answers, &mut sums);
-            pass.back(net, &transposed, answers, &mut gradient, span.start);
+impl CpuEngine {
+    pub fn new(networks: Vec<Network>, size: EngineSize) -> Self {
+        CpuEngine { networks, size }
+    }
+
+    pub fn forward(
+        &self,
+        network: usize,
+        parameters: &Array,
+        rows: Rows,
+        out: &mut Array,
+        out_at: usize,
+    ) {
+        let network = &self.networks[network];
+        let values = &rows.values.host()[rows.first * rows.width..][..rows.count * rows.width];
+        let out = &mut out.host_mut()[out_at..][..rows.count * network.outputs()];
+        forward(network, parameters.host(), values, rows.width, out);
+    }
+
+    pub fn gradient(
+        &self,
+        parameters: &Array,
+        samples: &Shuffled,
+        minibatch: Range<usize>,
+        objective: &dyn Objective,
+        gradient: &mut Array,
+        sums: &mut Array,
+        begin: bool,
+    ) {
+        let SamplesInOrder::Host(values, order) = samples.samples else {
+            unreachable!("samples of the CPU were expected")
+        };
+        let width = samples.width;
+        let row = |&i: &u32| &values[i as usize * width..][..width];
+        let rows: Vec<&[f32]> = order[minibatch].iter().map(row).collect();
+        let (gradient, sums) = (gradient.host_mut(), sums.host_mut());
+        let behind = self.networks.last().map_or(0, |last| last.span().end);
+        let batch = Minibatch {
+            rows: &rows,
+            flat: parameters.host(),
+            objective,
+            extras: self.size.parameters - behind + self.size.sums,
+        };
+        let (mut rest, others) = gradient.split_at_mut(behind);
+        let mut parts = Vec::new();
+        for network in &self.networks {
+            let (part, after) = rest.split_at_mut(network.span().len());
+            (rest, _) = (after, parts.push(part));
         }
-        (gradient, sums)
-    };
-    let (gradients, sums): (Vec<Vec<f32>>, Vec<S>) = pieces.map(piece).unzip();
-    (total(gradients), sums)
+        let networks = self.networks.par_iter().zip(parts).enumerate();
+        let extras: Vec<Vec<f32>> = networks
+            .map(|(number, (network, gradient))| batch.gradient(number, network, gradient))
+            .collect();
+        if begin {
+            sums.fill(0.0);
+        }
+        others.fill(0.0);
+        for extras in extras {
+            let (of_others, of_sums) = extras.split_at(others.len());
+            add(others, of_others);
+            add(sums, of_sums);
+        }
+    }
 }
 
-/// The sum of vectors of one length, in their order.
-fn total(vectors: Vec<Vec<f32>>) -> Vec<f32> {
-    const STRIP: usize = 1 << 13;
-    let mut vectors = vectors.into_iter();
-    let mut total = vectors.next().unwrap_or_default();
-    let rest: Vec<Vec<f32>> = vectors.collect();
-    let strips = total.par_chunks_mut(STRIP).enumerate();
-    strips.for_each(|(i, strip)| {
-        for vector in &rest {
-            let values = &vector[i * STRIP..][..strip.len()];
-            strip
-                .iter_mut()
-                .zip(values)
-                .for_each(|(sum, value)| *sum += value);
+/// Writes the outputs `[n][outputs]` of rows `[n][width]` that begin with observations, on all cores.
+pub fn forward(network: &Network, flat: &[f32], values: &[f32], width: usize, out: &mut [f32]) {
+    let (rows, outputs) = (chunk_rows(network), network.outputs());
+    let chunks = values.par_chunks(rows * width);
+    let chunks = chunks.zip(out.par_chunks_mut(rows * outputs));
+    chunks.for_each(|(values, out)| {
+        let rows: Vec<&[f32]> = values.chunks_exact(width).collect();
+        let (_, outputs) = Pass::new(network, flat, &rows);
+        out.copy_from_slice(&outputs);
+    });
+}
+
+fn chunk_rows(network: &Network) -> usize {
+    let wide = network.layers().iter().any(|params| is_wide(&params.layer));
+    if wide { WIDE_CHUNK_ROWS } else { CHUNK_ROWS }
+}
+
+fn add(sums: &mut [f32], values: &[f32]) {
+    sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+}
+
+/// What the gradient is taken of.
+struct Minibatch<'a> {
+    rows: &'a [&'a [f32]],
+    flat: &'a [f32],
+    objective: &'a dyn Objective,
+    /// Numbers of the extras.
+    extras: usize,
+}
+
+/// What a split leaves.
+struct Split {
+    /// Gradients of the narrow layers, one after another.
+    narrow: Vec<f32>,
+    extras: Vec<f32>,
+    /// What the gradients of the wide layers are made of.
+    wide: Vec<(Pass, Vec<Vec<f32>>)>,
+}
+
+impl Minibatch<'_> {
+    /// Writes the gradient of a network's parameters. Returns the extras.
+    fn gradient(&self, number: usize, network: &Network, gradient: &mut [f32]) -> Vec<f32> {
+        let chunk = chunk_rows(network);
+        // Wide layers keep what they see of a block of rows until their gradients are summed.
+        let (block, split) = match chunk {
+            WIDE_CHUNK_ROWS => (GRAD_SPLITS * chunk, chunk),
+            _ => (self.rows.len(), self.rows.len().div_ceil(GRAD_SPLITS)),
+        };
+        let layers = network.layers().iter();
+        let transposed = layers.map(|params| layers::transpose(params, self.flat));
+        let transposed: Vec<Vec<f32>> = transposed.collect();
+        let mut extras = vec![0.0; self.extras];
+        gradient.fill(0.0);
+        for rows in self.rows.chunks(block.max(1)) {
+            let splits = rows.par_chunks(split.max(1));
+            let splits = splits.map(|rows| self.split(number, network, &transposed, chunk, rows));
+            let splits: Vec<Split> = splits.collect();
+            splits.iter().for_each(|split| add(&mut extras, &split.extras));
+            sum_gradients(network, &splits, gradient);
+        }
+        extras
+    }
+
+    fn split(
+        &self,
+        number: usize,
+        network: &Network,
+        transposed: &[Vec<f32>],
+        chunk: usize,
+        rows: &[&[f32]],
+    ) -> Split {
+        let narrow = network.layers().iter().map(|params| narrow_len(params));
+        let mut split = Split {
+            narrow: vec![0.0; narrow.sum()],
+            extras: vec![0.0; self.extras],
+            wide: Vec::new(),
+        };
+        for rows in rows.chunks(chunk) {
+            let (pass, mut outputs) = Pass::new(network, self.flat, rows);
+            let batch = HostBatch {
+                network: number,
+                rows,
+                parameters: self.flat,
+                inv_count: 1.0 / self.rows.len() as f32,
+            };
+            self.objective.loss_gradient(&batch, &mut outputs, &mut split.extras);
+            let wide = pass.back(network, self.flat, transposed, outputs, &mut split.narrow);
+            if chunk == WIDE_CHUNK_ROWS {
+                split.wide.push((pass, wide));
+            }
+        }
+        split
+    }
+}
+
+/// Parameters of a layer whose gradient every split sums by itself.
+fn narrow_len(params: &super::network::LayerParams) -> usize {
+    match is_wide(&params.layer) {
+        true => 0,
+        false => params.span().len(),
+    }
+}
+
+/// Adds the splits' gradients to that of the network.
+fn sum_gradients(network: &Network, splits: &[Split], gradient: &mut [f32]) {
+    let (mut rest, mut narrow_at) = (gradient, 0);
+    let mut parts = Vec::new();
+    for (number, params) in network.layers().iter().enumerate() {
+        let (sums, after) = rest.split_at_mut(params.span().len());
+        rest = after;
+        match is_wide(&params.layer) {
+            true => {
+                let rows = sums.chunks_mut(WIDE_INPUTS * params.layer.filters()).enumerate();
+                parts.extend(rows.map(|(row, sums)| (number, Some(row * WIDE_INPUTS), 0, sums)));
+            }
+            false => parts.push((number, None, narrow_at, sums)),
+        }
+        narrow_at += narrow_len(params);
+    }
+    parts.into_par_iter().for_each(|(number, first, narrow_at, sums)| {
+        let layer = &network.layers()[number].layer;
+        for split in splits {
+            match first {
+                None => add(sums, &split.narrow[narrow_at..][..sums.len()]),
+                Some(first) => split.wide.iter().for_each(|(pass, gradients)| {
+                    let (input, gradient) = (&pass.inputs[number], &gradients[number]);
+                    layers::add_wide_gradient(layer, first, input, gradient, sums);
+                }),
+            }
         }
     });
-    total
 }
 
-/// Everything a chunk left on its way through a network.
+/// What some rows left on their way through a network.
 struct Pass {
-    maps: Vec<f32>,
-    /// Of every layer.
-    sight: Vec<Vec<f32>>,
-    /// What the hidden layers begin with.
-    joined: Vec<f32>,
-    hidden: Vec<Vec<f32>>,
-    samples: usize,
+    /// Of every layer, `[rows][..]`.
+    inputs: Vec<Vec<f32>>,
+    rows: usize,
 }
 
 impl Pass {
-    fn new(net: &Net<Place>, flat: &[f32], observations: &[&[f32]]) -> Pass {
-        let maps: Vec<f32> = match net.sees {
-            true => observations
-                .iter()
-                .flat_map(|row| &row[BASE_OBS_DIM..])
-                .copied()
-                .collect(),
-            false => Vec::new(),
-        };
-        let samples = observations.len();
-        let sight = forward(&net.sight, flat, &maps, samples);
-        let seen = sight.last().unwrap_or(&maps);
-        let width = seen.len() / samples.max(1);
-        let mut joined = Vec::with_capacity(samples * (BASE_OBS_DIM + width));
-        for (i, row) in observations.iter().enumerate() {
-            joined.extend_from_slice(&row[..BASE_OBS_DIM]);
-            joined.extend_from_slice(&seen[i * width..][..width]);
+    /// Takes rows that begin with observations through a network. Returns the outputs, too.
+    fn new(network: &Network, flat: &[f32], rows: &[&[f32]]) -> (Pass, Vec<f32>) {
+        let (spec, encoder) = (network.observation(), network.encoder_len());
+        let mut inputs: Vec<Vec<f32>> = Vec::with_capacity(network.layers().len());
+        let mut values: Vec<f32> = Vec::new();
+        let begin = if encoder > 0 { spec.vector } else { 0 };
+        rows.iter().for_each(|row| values.extend_from_slice(&row[begin..spec.dim()]));
+        for (number, params) in network.layers().iter().enumerate() {
+            if number == encoder && encoder > 0 {
+                values = join(rows, spec.vector, &values);
+            }
+            let output = layers::forward(params, flat, &values, rows.len());
+            inputs.push(std::mem::replace(&mut values, output));
         }
-        let hidden = forward(&net.hidden, flat, &joined, samples);
-        Pass {
-            maps,
-            sight,
-            joined,
-            hidden,
-            samples,
-        }
+        let rows = rows.len();
+        (Pass { inputs, rows }, values)
     }
 
-    /// Adds the gradients of the parameters from `first` on, given that of the answers, whose
-    /// activations are no longer needed.
+    /// Adds the gradients of the narrow layers to `narrow`, given that of the outputs. Returns the gradients
+    /// with respect to the sums of the wide layers, by layer.
     fn back(
         &self,
-        net: &Net<Place>,
-        transposed: &Net<Vec<f32>>,
-        answers: Vec<f32>,
-        sums: &mut [f32],
-        first: usize,
-    ) {
-        let below = net.sees && !net.sight.is_empty();
-        let joined = backward(
-            (&net.hidden, &transposed.hidden),
-            (&self.joined, &self.hidden),
-            answers,
-            below,
-            (sums, first),
-        );
-        if !below {
-            return;
+        network: &Network,
+        flat: &[f32],
+        transposed: &[Vec<f32>],
+        mut gradient: Vec<f32>,
+        narrow: &mut [f32],
+    ) -> Vec<Vec<f32>> {
+        let layers = network.layers();
+        let mut wide = vec![Vec::new(); layers.len()];
+        let mut narrow_at = narrow.len();
+        for (number, params) in layers.iter().enumerate().rev() {
+            let input = &self.inputs[number];
+            narrow_at -= narrow_len(params);
+            if !is_wide(&params.layer) {
+                let sums = &mut narrow[narrow_at..][..params.span().len()];
+                layers::add_gradient(&params.layer, input, &gradient, sums);
+            }
+            let Some(below) = number.checked_sub(1) else {
+                wide[number] = gradient;
+                break;
+            };
+            let transposed = &transposed[number];
+            let mut next =
+                layers::input_gradient(params, flat, transposed, &gradient, input.len());
+            let kind = layers[below].layer.activation();
+            if number == network.encoder_len() {
+                // The vector joined here; it does not learn.
+                let vector = network.observation().vector;
+                let joined = self.after(vector, input);
+                next = self.after(vector, &next);
+                layers::activation_backward(kind, &mut next, &joined);
+            } else {
+                layers::activation_backward(kind, &mut next, input);
+            }
+            wide[number] = std::mem::replace(&mut gradient, next);
         }
-        let width = joined.len() / self.samples;
-        let seen: Vec<f32> = joined
-            .chunks_exact(width)
-            .flat_map(|row| &row[BASE_OBS_DIM..])
-            .copied()
-            .collect();
-        backward(
-            (&net.sight, &transposed.sight),
-            (&self.maps, &self.sight),
-            seen,
-            false,
-            (sums, first),
-        );
+        wide
     }
+
+    /// Every row from a column on.
+    fn after(&self, column: usize, values: &[f32]) -> Vec<f32> {
+        let rows = values.chunks_exact(values.len() / self.rows);
+        rows.flat_map(|row| &row[column..]).copied().collect()
+    }
+}
+
+/// The vector of every observation, and what an encoder made of its maps.
+fn join(rows: &[&[f32]], vector: usize, encoded: &[f32]) -> Vec<f32> {
+    let width = encoded.len() / rows.len().max(1);
+    let mut joined = Vec::with_capacity(rows.len() * (vector + width));
+    for (row, encoded) in rows.iter().zip(encoded.chunks_exact(width)) {
+        joined.extend_from_slice(&row[..vector]);
+        joined.extend_from_slice(encoded);
+    }
+    joined
 }

@@ -1,57 +1,117 @@
-//! Networks of dense layers on a GPU, by launches of our own: [`forward`] for all layers at once, and
-//! [`minibatch_step`] for gradient steps, six for a minibatch.
+//! Networks on a GPU: narrow dense ones by custom WGSL kernels ([`fused`]), others layer by layer in burn's
+//! tensors ([`layerwise`]), without its autodiff.
 
-pub mod forward;
-pub mod minibatch_step;
+mod fused;
+mod layerwise;
+pub mod tensors;
 
-use super::layer::Bend;
-use super::network::Shape;
-use crate::kernels::locomotion::locomotion_layout::BASE_OBS_DIM;
-use crate::kernels::learn::network::{BLOCK, Head, Place, Plan, SUMS};
-use crate::motion::features::TRAJECTORY_DIM;
+use super::engine::{EngineSize, Rows, SamplesInOrder, Shuffled};
+use super::network::Network;
+use super::objective::Objective;
+use crate::gpu::tensor::{from_buffer, to_buffer};
+use crate::gpu::{Array, Buffer, Device, Gpu};
+use anyhow::Result;
+use burn::tensor::{Int, Tensor, TensorData};
+use fused::Fused;
+use layerwise::Layerwise;
+use std::ops::Range;
 
-/// Blocks of a piece. Where that made more than [`PIECES`], pieces grow.
-const PIECE: usize = 8;
-const PIECES: usize = 64;
+/// Networks over one flat vector, on a GPU.
+pub struct GpuEngine {
+    networks: Vec<Network>,
+    kind: Kind,
+    size: EngineSize,
+    gpu: Gpu,
+}
 
-/// How the networks and so many samples lie in memory; none if a layer is not dense.
-fn plan(shape: &Shape, rows: usize) -> Option<Plan> {
-    if shape.actor.sees {
-        return None;
+enum Kind {
+    Fused(Fused),
+    Layerwise(Layerwise),
+}
+
+impl GpuEngine {
+    /// # Errors
+    /// The device's buffers are too small.
+    pub fn new(gpu: &Gpu, networks: Vec<Network>, size: EngineSize) -> Result<Self> {
+        let kind = match Fused::new(gpu, &networks, size) {
+            Some(fused) => Kind::Fused(fused),
+            None => Kind::Layerwise(Layerwise::new(gpu, &networks, size)?),
+        };
+        Ok(GpuEngine {
+            networks,
+            kind,
+            size,
+            gpu: gpu.clone(),
+        })
     }
-    let (mut places, mut below, mut column) = (Vec::new(), [0, BASE_OBS_DIM], 2 * BASE_OBS_DIM);
-    for (actor, critic) in shape.actor.hidden.iter().zip(&shape.critic.hidden) {
-        for (below, place) in below.iter_mut().zip([actor, critic]) {
-            places.push(Place {
-                inputs: place.layer.patch() as u32,
-                outputs: place.layer.filters() as u32,
-                weights: place.weights().start as u32,
-                below: *below as u32,
-                above: column as u32,
-                bent: u32::from(place.layer.bend() == Bend::Tanh),
-            });
-            *below = column;
-            column += place.layer.filters();
+
+    /// Whatever the networks' widths, in tensors.
+    ///
+    /// # Errors
+    /// The device's buffers are too small.
+    pub fn layerwise(gpu: &Gpu, networks: Vec<Network>, size: EngineSize) -> Result<Self> {
+        Ok(GpuEngine {
+            kind: Kind::Layerwise(Layerwise::new(gpu, &networks, size)?),
+            networks,
+            size,
+            gpu: gpu.clone(),
+        })
+    }
+
+    pub fn forward(
+        &self,
+        network: usize,
+        parameters: &Array,
+        rows: Rows,
+        out: &mut Array,
+        out_at: usize,
+    ) {
+        match &self.kind {
+            Kind::Fused(fused) => fused.forward(network, parameters, rows, out, out_at),
+            Kind::Layerwise(layerwise) => {
+                let network = &self.networks[network];
+                layerwise.forward(network, parameters, rows, out, out_at);
+            }
         }
     }
-    let judged = TRAJECTORY_DIM + SUMS;
-    places.push(Place {
-        inputs: 0,
-        outputs: judged as u32,
-        weights: shape.log_std as u32,
-        below: 0,
-        above: column as u32,
-        bent: 0,
-    });
-    let blocks = rows.div_ceil(BLOCK);
-    let piece = PIECE * blocks.div_ceil(PIECE * PIECES);
-    let head = Head {
-        rows: rows as u32,
-        pitch: (column + judged) as u32,
-        pieces: blocks.div_ceil(piece) as u32,
-        piece: piece as u32,
-        parameters: shape.parameters() as u32,
-        count: places.len() as u32,
-    };
-    Some(Plan { head, places })
+
+    pub fn gradient(
+        &mut self,
+        parameters: &Array,
+        samples: &Shuffled,
+        minibatch: Range<usize>,
+        objective: &dyn Objective,
+        gradient: &mut Array,
+        sums: &mut Array,
+        begin: bool,
+    ) {
+        let SamplesInOrder::Gpu(values) = &samples.samples else {
+            unreachable!("samples of a GPU were expected")
+        };
+        let rows = Rows {
+            values,
+            width: samples.width,
+            first: minibatch.start,
+            count: minibatch.len(),
+        };
+        match &mut self.kind {
+            Kind::Fused(fused) => {
+                fused.gradient(parameters, rows, objective, gradient, sums, begin);
+            }
+            Kind::Layerwise(layerwise) => {
+                let networks = &self.networks;
+                layerwise.gradient(networks, parameters, rows, objective, gradient, sums, begin);
+            }
+        }
+    }
+}
+
+/// The rows `[..][width]` of the indices `order`.
+pub(super) fn reordered(gpu: &Gpu, rows: &Buffer<f32>, width: usize, order: &[u32]) -> Array {
+    let device = Device::from(gpu.clone()).tensors();
+    let order: Vec<i32> = order.iter().map(|&i| i as i32).collect();
+    let length = order.len();
+    let order = Tensor::<1, Int>::from_data(TensorData::new(order, [length]), &device);
+    let rows: Tensor<2> = from_buffer(gpu, rows, [rows.len() / width, width]);
+    Array::Gpu(to_buffer(rows.select(0, order)))
 }

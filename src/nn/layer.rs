@@ -2,39 +2,48 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What a convolution is asked to be.
+/// A convolution without padding, as it is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Convolution {
+    /// Filters; as many channels come out.
     pub filters: usize,
-    /// Height and width of a filter.
+    /// Height and width of a filter, cells.
     pub size: usize,
+    /// Cells between two places of a filter.
     pub stride: usize,
 }
 
 /// What a layer does to its sums.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bend {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Activation {
+    /// `max(x, 0)`
     Relu,
+    /// The hyperbolic tangent.
     Tanh,
-    /// Nothing: a network's answer.
-    None,
+    /// Nothing, as in the last layer of a network.
+    Identity,
 }
 
 /// A valid convolution of inputs of a known shape, channels last. A dense layer is one of a single
-/// place, whose channels are its numbers.
+/// pixel, whose channels are its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layer {
     inputs: [usize; 3],
     outputs: [usize; 3],
     convolution: Convolution,
-    bend: Bend,
+    activation: Activation,
 }
 
 impl Layer {
-    /// Of inputs `[height, width, channels]`. None if the filters are larger than that, or anything
-    /// is zero.
-    pub fn convolution(inputs: [usize; 3], convolution: Convolution, bend: Bend) -> Option<Self> {
+    /// A convolution of inputs `[height, width, channels]`. None if the filters are larger than that, or
+    /// anything is zero.
+    pub fn convolution(
+        inputs: [usize; 3],
+        convolution: Convolution,
+        activation: Activation,
+    ) -> Option<Self> {
         let Convolution {
             filters,
             size,
@@ -44,16 +53,17 @@ impl Layer {
         if [filters, size, stride, channels].contains(&0) || size > height.min(width) {
             return None;
         }
-        let places = |length: usize| (length - size) / stride + 1;
+        let pixels = |length: usize| (length - size) / stride + 1;
         Some(Layer {
             inputs,
-            outputs: [places(height), places(width), filters],
+            outputs: [pixels(height), pixels(width), filters],
             convolution,
-            bend,
+            activation,
         })
     }
 
-    pub fn dense(inputs: usize, outputs: usize, bend: Bend) -> Self {
+    /// A layer in which every output depends on every input.
+    pub fn dense(inputs: usize, outputs: usize, activation: Activation) -> Self {
         Layer {
             inputs: [1, 1, inputs],
             outputs: [1, 1, outputs],
@@ -62,20 +72,31 @@ impl Layer {
                 size: 1,
                 stride: 1,
             },
-            bend,
+            activation,
         }
     }
 
-    /// `[height, width, channels]`.
+    /// `[height, width, channels]`
     pub fn inputs(&self) -> [usize; 3] {
         self.inputs
     }
 
-    /// `[height, width, filters]`.
+    /// `[height, width, filters]`
     pub fn outputs(&self) -> [usize; 3] {
         self.outputs
     }
 
+    /// Numbers of an input.
+    pub fn input_len(&self) -> usize {
+        self.inputs.iter().product()
+    }
+
+    /// Numbers of an output.
+    pub fn output_len(&self) -> usize {
+        self.outputs.iter().product()
+    }
+
+    /// Whether it is a dense layer.
     pub fn is_dense(&self) -> bool {
         self.inputs[..2] == [1, 1]
     }
@@ -85,15 +106,17 @@ impl Layer {
         self.convolution.size
     }
 
+    /// Cells between two places of a filter.
     pub fn stride(&self) -> usize {
         self.convolution.stride
     }
 
-    pub fn bend(&self) -> Bend {
-        self.bend
+    /// What is done to the sums.
+    pub fn activation(&self) -> Activation {
+        self.activation
     }
 
-    /// How many; as many biases.
+    /// Number of filters, and of biases.
     pub fn filters(&self) -> usize {
         self.convolution.filters
     }
@@ -101,40 +124,35 @@ impl Layer {
     /// Numbers that come together in an output: weights are `[patch][filters]`, a patch is
     /// `[row][column][channel]`.
     pub fn patch(&self) -> usize {
-        self.size() * self.run()
+        self.size() * self.patch_row_len()
     }
 
-    /// Floats of a row of a patch. With channels last they are neighbours.
-    pub(super) fn run(&self) -> usize {
+    /// Numbers of a row of a patch. With channels last they are neighbours.
+    pub(super) fn patch_row_len(&self) -> usize {
         self.size() * self.inputs[2]
     }
 
-    /// Floats of a row of the input.
-    pub(super) fn pitch(&self) -> usize {
+    /// Numbers of a row of the input.
+    pub(super) fn row_stride(&self) -> usize {
         self.inputs[1] * self.inputs[2]
     }
 
-    /// Where in the input the patch of every output pixel starts: `[samples][height][width]`.
-    pub(super) fn starts(&self, samples: usize) -> Vec<usize> {
+    /// Index in the input of the patch of every output pixel: `[samples][height][width]`.
+    pub(super) fn patch_offsets(&self, samples: usize) -> Vec<usize> {
         let [rows, columns, _] = self.outputs;
-        let mut starts = Vec::with_capacity(samples * rows * columns);
+        let mut offsets = Vec::with_capacity(samples * rows * columns);
         for sample in 0..samples {
             for row in 0..rows {
-                let first = sample * floats(self.inputs) + row * self.stride() * self.pitch();
-                let places = 0..columns;
-                starts.extend(places.map(|column| first + column * self.stride() * self.inputs[2]));
+                let first = sample * self.input_len() + row * self.stride() * self.row_stride();
+                let columns = 0..columns;
+                offsets.extend(columns.map(|column| first + column * self.stride() * self.inputs[2]));
             }
         }
-        starts
+        offsets
     }
 
     /// Multiplications and additions for one sample.
-    pub fn operations(&self) -> usize {
-        2 * floats(self.outputs) * self.patch()
+    pub fn flops(&self) -> usize {
+        2 * self.output_len() * self.patch()
     }
-}
-
-/// Numbers of something of that shape.
-pub fn floats(shape: [usize; 3]) -> usize {
-    shape.iter().product()
 }

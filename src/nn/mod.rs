@@ -1,10 +1,20 @@
-//! Networks: their form, their parameters, their evaluation and gradients.
+//! Networks: their form, their evaluation, their gradients, and the steps against these.
+//!
+//! [`layer`] and [`network`] say where everything lies in one flat vector of parameters, [`actor_critic`]
+//! for an actor and its critic; an [`engine`] evaluates networks and takes the gradient of an
+//! [`objective`], on the CPU ([`cpu`]) or a GPU ([`gpu`]); [`adam`] steps against it.
+//! [`running_mean_std`] normalises; a [`policy`] is what is left when learning is over.
 
+pub mod actor_critic;
 pub mod adam;
-pub mod autodiff;
 pub mod cpu;
+pub mod engine;
 pub mod gpu;
 pub mod layer;
 pub mod network;
+pub mod objective;
 pub mod policy;
-pub mod tensors;
+pub mod running_mean_std;
+
+pub use engine::{Engine, EngineSize, Rows, Shuffled};
+pub use objective::Objective;

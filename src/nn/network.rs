@@ -1,190 +1,238 @@
-//! The form of policy and critic, and where their parameters lie.
+//! The form of a network, and where its parameters lie in a flat vector.
 //!
-//! On the plane: dense layers, tanh. Among obstacles the maps go through convolutions and dense
-//! layers of their own, and join the rest; ReLU everywhere (paper, figure 3).
+//! The maps of an observation, where there are any, go through convolutions and dense layers of their
+//! own; what these make of them joins the observation's vector, and both go through the trunk.
 
-use super::layer::{Bend, Convolution, Layer, floats};
-use crate::kernels::locomotion::locomotion_layout::{CELLS, BASE_OBS_DIM, MAPS};
-use crate::kernels::rng::{gaussian, random4};
-use crate::motion::features::TRAJECTORY_DIM;
+use super::layer::{Activation, Convolution, Layer};
+use crate::env::ObservationSpec;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// Hidden layers of policy and critic alike.
+/// The hidden layers of a network, as they are chosen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Network {
-    /// Of the obstacle maps.
+pub struct NetworkConfig {
+    /// Convolutions over the maps.
     pub convolutions: Vec<Convolution>,
-    /// Widths of the dense layers that follow them, before the rest of the observation joins.
-    pub sight: Vec<usize>,
-    /// Widths of the dense layers after that.
+    /// Widths of the dense layers behind them, before the vector joins.
+    pub encoder_hidden: Vec<usize>,
+    /// Widths of the dense layers behind that.
     pub hidden: Vec<usize>,
+    /// What all hidden layers do to their sums.
+    pub activation: Activation,
 }
 
-/// Places of all parameters in one flat vector.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
-    pub(super) actor: Net<Place>,
-    pub(super) critic: Net<Place>,
-    pub(super) log_std: usize,
+/// A network that cannot be.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NetworkError {
+    #[error("{key} has {layers} layers; at most {MAX_DEPTH} are possible")]
+    TooDeep { key: &'static str, layers: usize },
+    #[error("{key} has a layer of width {width}; possible are 1 to {MAX_WIDTH}")]
+    Width { key: &'static str, width: usize },
+    #[error("convolutions has a {what} of {value}; possible are 1 to {most}")]
+    Convolution {
+        what: &'static str,
+        value: usize,
+        most: usize,
+    },
+    #[error(
+        "convolutions has a filter of {size} x {size} cells over an input of {height} x {width}: each convolution makes the maps smaller"
+    )]
+    FilterTooLarge {
+        size: usize,
+        height: usize,
+        width: usize,
+    },
+    #[error("{key} needs maps, and this task's observation has none: leave it empty")]
+    NoGrid { key: &'static str },
 }
 
-/// One network, made of layers of some kind.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Net<T> {
-    /// Whether there are maps to see.
-    pub sees: bool,
-    /// From the maps to what joins the rest of the observation: convolutions, then dense layers.
-    pub sight: Vec<T>,
-    /// From there to the answer.
-    pub hidden: Vec<T>,
-}
+/// The most layers of a kind.
+pub const MAX_DEPTH: usize = 8;
+/// The most numbers of a dense layer.
+pub const MAX_WIDTH: usize = 2048;
+const MAX_FILTERS: usize = 256;
+const MAX_FILTER_SIZE: usize = 16;
 
-/// Where a layer's weights, then its biases lie.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    pub layer: Layer,
-    start: usize,
-}
-
-impl Place {
-    pub fn weights(&self) -> Range<usize> {
-        self.start..self.start + self.layer.patch() * self.layer.filters()
-    }
-
-    pub fn biases(&self) -> Range<usize> {
-        let start = self.weights().end;
-        start..start + self.layer.filters()
-    }
-}
-
-impl<T> Net<T> {
-    /// All layers, in the flat vector's order.
-    pub fn layers(&self) -> impl Iterator<Item = &T> {
-        self.sight.iter().chain(&self.hidden)
-    }
-
-    pub fn map<U>(&self, f: impl Fn(&T) -> U) -> Net<U> {
-        Net {
-            sees: self.sees,
-            sight: self.sight.iter().map(&f).collect(),
-            hidden: self.hidden.iter().map(&f).collect(),
+impl NetworkConfig {
+    fn check(&self) -> Result<(), NetworkError> {
+        depth("convolutions", self.convolutions.len())?;
+        for (key, widths) in [
+            ("encoder_hidden", &self.encoder_hidden),
+            ("hidden", &self.hidden),
+        ] {
+            depth(key, widths.len())?;
+            if let Some(&width) = widths.iter().find(|width| !(1..=MAX_WIDTH).contains(*width)) {
+                return Err(NetworkError::Width { key, width });
+            }
         }
+        for convolution in &self.convolutions {
+            for (what, value, most) in [
+                ("number of filters", convolution.filters, MAX_FILTERS),
+                ("filter size", convolution.size, MAX_FILTER_SIZE),
+                ("stride", convolution.stride, MAX_FILTER_SIZE),
+            ] {
+                if !(1..=most).contains(&value) {
+                    return Err(NetworkError::Convolution { what, value, most });
+                }
+            }
+        }
+        Ok(())
     }
-}
 
-impl Net<Place> {
-    fn operations(&self) -> usize {
-        self.layers().map(|place| place.layer.operations()).sum()
-    }
-
-    /// All its parameters.
-    pub fn span(&self) -> Range<usize> {
-        let start = self.layers().next().map_or(0, |first| first.start);
-        start..self.layers().last().map_or(0, |last| last.biases().end)
-    }
-}
-
-impl Network {
-    /// The layers of the convolutions over the maps; none if a filter does not fit its input.
-    pub fn eyes(&self) -> Option<Vec<Layer>> {
-        let mut inputs = [CELLS, CELLS, MAPS];
+    /// The layers of the convolutions over maps of that shape.
+    fn conv_layers(&self, grid: [usize; 3]) -> Result<Vec<Layer>, NetworkError> {
+        let mut inputs = grid;
         let layers = self.convolutions.iter().map(|&convolution| {
-            let layer = Layer::convolution(inputs, convolution, Bend::Relu)?;
+            let [height, width, _] = inputs;
+            let layer = Layer::convolution(inputs, convolution, self.activation);
+            let layer = layer.ok_or(NetworkError::FilterTooLarge {
+                size: convolution.size,
+                height,
+                width,
+            })?;
             inputs = layer.outputs();
-            Some(layer)
+            Ok(layer)
         });
         layers.collect()
     }
 
-    /// The layers of a network that answers with `answers` numbers.
-    fn net(&self, sees: bool, answers: usize) -> Option<Net<Layer>> {
-        let bend = if sees { Bend::Relu } else { Bend::Tanh };
-        let mut sight = if sees { self.eyes()? } else { Vec::new() };
-        let maps = if sees { CELLS * CELLS * MAPS } else { 0 };
-        let mut inputs = sight.last().map_or(maps, |layer| floats(layer.outputs()));
-        if sees {
-            for &outputs in &self.sight {
-                sight.push(Layer::dense(inputs, outputs, bend));
-                inputs = outputs;
-            }
+    /// All layers before the vector joins.
+    fn encoder(&self, grid: Option<[usize; 3]>) -> Result<Vec<Layer>, NetworkError> {
+        let Some(grid) = grid else {
+            let keys = [
+                ("convolutions", self.convolutions.is_empty()),
+                ("encoder_hidden", self.encoder_hidden.is_empty()),
+            ];
+            let unusable = keys.into_iter().find(|(_, empty)| !empty);
+            return unusable.map_or(Ok(Vec::new()), |(key, _)| Err(NetworkError::NoGrid { key }));
+        };
+        let mut layers = self.conv_layers(grid)?;
+        let flat = grid.iter().product();
+        let mut inputs = layers.last().map_or(flat, Layer::output_len);
+        for &width in &self.encoder_hidden {
+            layers.push(Layer::dense(inputs, width, self.activation));
+            inputs = width;
         }
-        inputs += BASE_OBS_DIM;
-        let mut hidden = Vec::with_capacity(self.hidden.len() + 1);
-        for &outputs in &self.hidden {
-            hidden.push(Layer::dense(inputs, outputs, bend));
-            inputs = outputs;
-        }
-        hidden.push(Layer::dense(inputs, answers, Bend::None));
-        Some(Net {
-            sees,
-            sight,
-            hidden,
-        })
+        Ok(layers)
     }
 }
 
-impl Shape {
-    /// For observations of `width` numbers; none if a filter of the network does not fit its input.
-    pub fn new(network: &Network, width: usize) -> Option<Self> {
-        let sees = width > BASE_OBS_DIM;
-        let mut start = 0;
-        let mut place = |net: Net<Layer>| {
-            let mut place = |layer: Layer| {
-                let place = Place { layer, start };
-                start = place.biases().end;
-                place
-            };
-            Net {
-                sees,
-                sight: net.sight.into_iter().map(&mut place).collect(),
-                hidden: net.hidden.into_iter().map(&mut place).collect(),
-            }
+fn depth(key: &'static str, layers: usize) -> Result<(), NetworkError> {
+    match layers > MAX_DEPTH {
+        true => Err(NetworkError::TooDeep { key, layers }),
+        false => Ok(()),
+    }
+}
+
+/// A layer, and where its weights `[patch][filters]`, then its biases `[filters]`, lie in the flat vector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LayerParams {
+    pub layer: Layer,
+    start: usize,
+}
+
+impl LayerParams {
+    /// Indices of the weights.
+    pub fn weights(&self) -> Range<usize> {
+        self.start..self.start + self.layer.patch() * self.layer.filters()
+    }
+
+    /// Indices of the biases.
+    pub fn biases(&self) -> Range<usize> {
+        let start = self.weights().end;
+        start..start + self.layer.filters()
+    }
+
+    /// Indices of both.
+    pub fn span(&self) -> Range<usize> {
+        self.start..self.biases().end
+    }
+}
+
+/// A network whose parameters lie in a flat vector.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Network {
+    observation: ObservationSpec,
+    /// From the input to the output; so many of them are the encoder's.
+    layers: Vec<LayerParams>,
+    encoder: usize,
+}
+
+impl Network {
+    /// A network of those hidden layers with so many `outputs`, whose parameters begin at the index
+    /// `start` of a flat vector.
+    ///
+    /// # Errors
+    /// There can be no such network, or not for such observations.
+    pub fn new(
+        config: &NetworkConfig,
+        observation: &ObservationSpec,
+        outputs: usize,
+        start: usize,
+    ) -> Result<Self, NetworkError> {
+        config.check()?;
+        let mut layers = config.encoder(observation.grid)?;
+        let encoder = layers.len();
+        let maps = observation.dim() - observation.vector;
+        let mut inputs = observation.vector + layers.last().map_or(maps, Layer::output_len);
+        for &width in &config.hidden {
+            layers.push(Layer::dense(inputs, width, config.activation));
+            inputs = width;
+        }
+        layers.push(Layer::dense(inputs, outputs, Activation::Identity));
+        let mut start = start;
+        let place = |layer: Layer| {
+            let params = LayerParams { layer, start };
+            start = params.span().end;
+            params
         };
-        let actor = place(network.net(sees, TRAJECTORY_DIM)?);
-        let critic = place(network.net(sees, 1)?);
-        Some(Shape {
-            log_std: critic.span().end,
-            actor,
-            critic,
+        Ok(Network {
+            observation: *observation,
+            layers: layers.into_iter().map(place).collect(),
+            encoder,
         })
     }
 
-    /// Multiplications and additions of both networks for one observation.
-    pub fn operations(&self) -> usize {
-        self.actor.operations() + self.critic.operations()
+    /// What it observes.
+    pub fn observation(&self) -> &ObservationSpec {
+        &self.observation
     }
 
-    /// Multiplications and additions of the actor for one observation.
-    pub fn actor_operations(&self) -> usize {
-        self.actor.operations()
+    /// All layers: the encoder's, then the trunk's.
+    pub fn layers(&self) -> &[LayerParams] {
+        &self.layers
     }
 
-    /// Length of the flat vector.
-    pub fn parameters(&self) -> usize {
-        self.log_std + TRAJECTORY_DIM
+    /// Layers of the encoder.
+    pub fn encoder_len(&self) -> usize {
+        self.encoder
     }
 
-    /// Gaussian weights of unit gain, nearly none in the last layers, so that learning starts
-    /// from the plain distribution and the mean value (as RLlib's networks do); zero biases.
-    pub fn init(&self, seed: u32, log_std: f32) -> Vec<f32> {
-        const STREAM: u32 = 0x494e_4954;
-        const LAST_GAIN: f32 = 0.01;
-        let mut flat = vec![0.0; self.parameters()];
-        for net in [&self.actor, &self.critic] {
-            let depth = net.layers().count();
-            // ReLU halves what passes; tanh leaves it.
-            let gain = if net.sees { 2f32.sqrt() } else { 1.0 };
-            for (at, place) in net.layers().enumerate() {
-                let gain = if at + 1 == depth { LAST_GAIN } else { gain };
-                let deviation = gain / (place.layer.patch() as f32).sqrt();
-                for at in place.weights() {
-                    flat[at] = deviation * gaussian(random4(seed, at as u32, 0, STREAM));
-                }
-            }
-        }
-        flat[self.log_std..].fill(log_std);
-        flat
+    /// Whether there are layers between the maps and the trunk.
+    pub fn has_map_encoder(&self) -> bool {
+        self.encoder > 0
+    }
+
+    /// The convolutions over the maps.
+    pub fn conv_layers(&self) -> &[LayerParams] {
+        let dense = self.layers.iter().position(|params| params.layer.is_dense());
+        &self.layers[..dense.unwrap_or(0)]
+    }
+
+    /// Numbers of an output.
+    pub fn outputs(&self) -> usize {
+        self.layers.last().map_or(0, |last| last.layer.output_len())
+    }
+
+    /// Indices of all its parameters.
+    pub fn span(&self) -> Range<usize> {
+        let start = self.layers.first().map_or(0, |first| first.start);
+        start..self.layers.last().map_or(start, |last| last.span().end)
+    }
+
+    /// Multiplications and additions for one observation.
+    pub fn flops(&self) -> usize {
+        self.layers.iter().map(|params| params.layer.flops()).sum()
     }
 }

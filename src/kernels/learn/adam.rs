@@ -1,67 +1,80 @@
 //! One step of Adam. Shader: `shaders/learn/adam.wgsl`.
 
-use super::network::Plan;
-use crate::gpu::kernel::groups;
+use crate::gpu::buffer::Argument;
 use crate::gpu::{Buffer, Gpu, shader};
+use multiversion::multiversion;
 
 crate::shader_params! {
     pub struct Params for adam {
         pub parameters: u32,
         /// Learning rate over `1 - beta_1^steps`.
-        pub rate: f32,
+        pub lr: f32,
         /// `1 / (1 - beta_2^steps)`.
-        pub unbias: f32,
+        pub bias_correction: f32,
         /// Largest norm of the gradient; 0 for no limit.
-        pub max_norm: f32,
+        pub max_grad_norm: f32,
     }
 }
 
 /// Kingma and Ba's, but for the last.
 pub const BETA_1: f64 = 0.9;
 pub const BETA_2: f64 = 0.999;
-pub const EPSILON: f64 = 1e-5;
+const EPSILON: f32 = 1e-5;
+
+impl Params {
+    /// Of the `steps`-th step, whose moments are corrected for having begun at zero.
+    pub fn new(parameters: usize, steps: u64, lr: f64, max_grad_norm: f64) -> Self {
+        let steps = steps.min(i32::MAX as u64) as i32;
+        Params {
+            parameters: parameters as u32,
+            lr: (lr / (1.0 - BETA_1.powi(steps))) as f32,
+            bias_correction: (1.0 / (1.0 - BETA_2.powi(steps))) as f32,
+            max_grad_norm: max_grad_norm as f32,
+        }
+    }
+}
+
+/// Workgroups for so many parameters, in two dimensions where one does not suffice.
+pub fn groups(parameters: usize) -> [u32; 3] {
+    const MOST: u32 = 1 << 15;
+    let groups = (parameters as u32).div_ceil(shader::ADAM.workgroup[0]);
+    [groups.min(MOST), groups.div_ceil(MOST), 1]
+}
 
 pub fn launch(
     gpu: &Gpu,
-    plan: &Buffer<u32>,
     gradient: &Buffer<f32>,
-    squares: &Buffer<f32>,
-    place: &Buffer<u32>,
+    norm_partials: &Buffer<f32>,
     parameters: &Buffer<f32>,
-    turned: &Buffer<f32>,
-    first: &Buffer<f32>,
-    second: &Buffer<f32>,
+    m: &Buffer<f32>,
+    v: &Buffer<f32>,
     params: &Params,
 ) {
-    let groups = groups(&shader::ADAM, params.parameters as usize);
-    let buffers: [&dyn crate::gpu::buffer::Argument; 8] = [
-        plan, gradient, squares, place, parameters, turned, first, second,
-    ];
-    gpu.launch(&shader::ADAM, groups, &buffers, params);
+    let buffers: [&dyn Argument; 5] = [gradient, norm_partials, parameters, m, v];
+    gpu.launch(&shader::ADAM, groups(params.parameters as usize), &buffers, params);
 }
 
+#[multiversion(targets("x86_64+avx512f+avx512vl+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 pub fn twin(
-    _plan: &Plan,
     gradient: &[f32],
-    squares: &[f32],
-    place: &[u32],
+    norm_partials: &[f32],
     parameters: &mut [f32],
-    turned: &mut [f32],
-    first: &mut [f32],
-    second: &mut [f32],
+    m: &mut [f32],
+    v: &mut [f32],
     params: &Params,
 ) {
-    let norm = squares.iter().sum::<f32>().sqrt();
-    let cut = match params.max_norm > 0.0 {
-        true => (params.max_norm / (norm + 1e-6)).min(1.0),
+    let norm = norm_partials.iter().sum::<f32>().sqrt();
+    let clip_scale = match params.max_grad_norm > 0.0 {
+        true => (params.max_grad_norm / (norm + 1e-6)).min(1.0),
         false => 1.0,
     };
-    let [keep_1, keep_2, epsilon] = [BETA_1, BETA_2, EPSILON].map(|constant| constant as f32);
-    for i in 0..params.parameters as usize {
-        let slope = gradient[i] * cut;
-        first[i] = keep_1 * first[i] + (1.0 - keep_1) * slope;
-        second[i] = keep_2 * second[i] + (1.0 - keep_2) * slope * slope;
-        parameters[i] -= params.rate * first[i] / ((second[i] * params.unbias).sqrt() + epsilon);
-        turned[place[i] as usize] = parameters[i];
+    let [keep_m, keep_v] = [BETA_1, BETA_2].map(|beta| beta as f32);
+    let [take_m, take_v] = [BETA_1, BETA_2].map(|beta| (1.0 - beta) as f32);
+    let moments = m.iter_mut().zip(v);
+    for ((parameter, gradient), (m, v)) in parameters.iter_mut().zip(gradient).zip(moments) {
+        let gradient = gradient * clip_scale;
+        *m = keep_m * *m + take_m * gradient;
+        *v = keep_v * *v + take_v * gradient * gradient;
+        *parameter -= params.lr * *m / ((*v * params.bias_correction).sqrt() + EPSILON);
     }
 }

@@ -1,6 +1,7 @@
-//! The gradient with respect to what comes into the layers. Shader: `shaders/learn/backward.wgsl`.
+//! Gradients with respect to the sums of all layers. Shader: `shaders/learn/backward.wgsl`.
 
-use super::network::{BLOCK, Plan};
+use super::network::BLOCK;
+use crate::gpu::buffer::Argument;
 use crate::gpu::{Buffer, Gpu, shader};
 
 crate::shader_params! {
@@ -9,38 +10,19 @@ crate::shader_params! {
     }
 }
 
+/// Goes back through so many `networks`, which are all of the layout's.
 pub fn launch(
     gpu: &Gpu,
-    plan: &Buffer<u32>,
-    turned: &Buffer<f32>,
+    networks: usize,
+    layout: &Buffer<u32>,
+    parameters: &Buffer<f32>,
     rows: &Buffer<f32>,
-    slopes: &Buffer<f32>,
+    output_grads: &Buffer<f32>,
+    extras: &Buffer<f32>,
+    grads: &Buffer<f32>,
     params: &Params,
 ) {
-    let groups = [params.rows.div_ceil(BLOCK as u32), 1, 2];
-    gpu.launch(
-        &shader::BACKWARD,
-        groups,
-        &[plan, turned, rows, slopes],
-        params,
-    );
-}
-
-pub fn twin(plan: &Plan, turned: &[f32], rows: &[f32], slopes: &mut [f32], params: &Params) {
-    for network in [0, 1] {
-        // What is observed does not learn.
-        for place in plan.layers(network).skip(1).rev() {
-            let [inputs, outputs, weights, below, above] = place.sizes();
-            for row in 0..(params.rows as usize).next_multiple_of(BLOCK) {
-                for input in 0..inputs {
-                    let weights = turned[weights + input..].iter().step_by(inputs);
-                    let terms = (0..outputs).zip(weights);
-                    let terms = terms.map(|(o, weight)| slopes[plan.at(row, above + o)] * weight);
-                    let sum: f32 = terms.sum();
-                    let bent = rows[plan.at(row, below + input)];
-                    slopes[plan.at(row, below + input)] = sum * (1.0 - bent * bent);
-                }
-            }
-        }
-    }
+    let groups = [params.rows.div_ceil(BLOCK as u32), 1, networks as u32];
+    let buffers: [&dyn Argument; 6] = [layout, parameters, rows, output_grads, extras, grads];
+    gpu.launch(&shader::BACKWARD, groups, &buffers, params);
 }

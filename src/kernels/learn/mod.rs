@@ -1,15 +1,17 @@
-//! Learning: [`sample_action`] draws actions, [`gae`] computes advantages. A gradient step of dense
-//! networks, in order: [`forward`], [`mod@loss`], [`backward`], [`mod@gradient`], [`reduce_grads`],
-//! [`adam`]; [`network`] defines their memory layout.
+//! Learning: [`sample_action`] draws actions, [`gae`] computes advantages. The gradient of narrow dense
+//! networks, in order: [`forward`], an objective such as [`ppo_loss`], [`backward`], [`mod@gradient`],
+//! [`reduce_grads`]; [`network`] defines their memory layout. A step against any gradient: [`grad_norm`],
+//! [`adam`].
 
 pub mod adam;
 pub mod backward;
 pub mod forward;
 pub mod gae;
 pub mod gather_samples;
+pub mod grad_norm;
 pub mod gradient;
-pub mod loss;
 pub mod network;
+pub mod ppo_loss;
 pub mod reduce_grads;
 pub mod rollout_moments;
 pub mod sample_action;

@@ -1,9 +1,8 @@
-//! How policy and critic, all of dense layers, lie in memory while they learn on a GPU: what
-//! `shaders/shared/network.wgsl` says, which [`forward`](super::forward), [`loss`](super::loss),
-//! [`backward`](super::backward), [`gradient`](super::gradient), [`total`](super::reduce_grads) and
-//! [`adam`](super::adam) read.
+//! How networks of dense layers, and a batch of rows on its way through them, lie in memory on a GPU: what
+//! `shaders/shared/network.wgsl` says, which [`forward`](super::forward), [`backward`](super::backward),
+//! [`gradient`](super::gradient) and [`reduce_grads`](super::reduce_grads) read.
 
-use crate::gpu::shader::gradient::constants as wgsl;
+use crate::gpu::shader::forward::constants as wgsl;
 use bytemuck::{Pod, Zeroable};
 
 /// Rows, or inputs, that an invocation computes at once.
@@ -11,88 +10,145 @@ pub const BLOCK: usize = 8;
 /// Invocations of a workgroup.
 pub(super) const LANES: u32 = 32;
 /// The most rows: WebGPU launches no more workgroups in a dimension.
-pub const ROWS: usize = BLOCK * 65_535;
-/// What the loss adds up besides the gradient with respect to `log_std`: surrogate, value loss,
-/// entropy, KL divergence, samples out of the clip range.
-pub const SUMS: usize = 5;
-/// Numbers a workgroup of `total` adds up.
-pub const GROUP: usize = 64;
+pub const MAX_ROWS: usize = BLOCK * 65_535;
+/// The most networks.
+pub const MAX_NETWORKS: usize = 4;
 
-const _: () = assert!(
-    wgsl::BLOCK as usize == BLOCK
-        && wgsl::LANES == LANES
-        && wgsl::SUMS as usize == SUMS
-        && wgsl::GROUP as usize == GROUP
-);
+/// Blocks of a split, and the most splits, of a gradient.
+const SPLIT_BLOCKS: usize = 8;
+const MAX_SPLITS: usize = 64;
+/// The most numbers of all splits' gradients together (16 MiB), but for the one that there must be.
+const MAX_PARTIALS: usize = 1 << 22;
 
-/// A layer.
+const _: () = assert!(wgsl::BLOCK as usize == BLOCK && wgsl::LANES == LANES);
+
+/// What a layer does to its sums.
+pub const IDENTITY: u32 = wgsl::IDENTITY;
+pub const RELU: u32 = wgsl::RELU;
+pub const TANH: u32 = wgsl::TANH;
+
+/// A dense layer.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct Place {
+pub struct LayerWords {
     pub inputs: u32,
     pub outputs: u32,
     /// Where in the parameters its weights `[inputs][outputs]` begin; its biases follow.
     pub weights: u32,
-    /// Columns of what comes in and goes out.
-    pub below: u32,
-    pub above: u32,
-    /// 1: tanh of the sums. 0: the sums.
-    pub bent: u32,
+    /// Columns of the inputs and of the outputs.
+    pub input_col: u32,
+    pub output_col: u32,
+    /// [`IDENTITY`], [`RELU`] or [`TANH`].
+    pub activation: u32,
 }
 
 /// What does not depend on the layer.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct Head {
-    /// Samples.
+pub struct BatchHead {
     pub rows: u32,
-    /// Numbers of a row: what is observed, once for each network, then what comes out of every layer,
-    /// the actor's before the critic's, then what the loss adds up.
-    pub pitch: u32,
-    /// Rows are added up in so many pieces of `piece` blocks.
-    pub pieces: u32,
-    pub piece: u32,
+    /// Numbers of a row: the observation, once for each network, then the outputs of every layer, then
+    /// the extras.
+    pub row_stride: u32,
+    /// Gradients are summed over so many parts of `split_blocks` blocks.
+    pub splits: u32,
+    pub split_blocks: u32,
     pub parameters: u32,
-    /// Of `places`.
-    pub count: u32,
+    /// Sums of the objective.
+    pub sums: u32,
+    pub networks: u32,
+    /// Layers of all networks, and one without inputs: the extras.
+    pub layers: u32,
+    /// The first layer of each network, and of the one behind the last.
+    pub first_layer: [u32; MAX_NETWORKS + 1],
+    /// Outputs of the networks before each.
+    pub outputs_before: [u32; MAX_NETWORKS + 1],
 }
 
+/// Networks, and so many rows, on a GPU.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
-    pub head: Head,
-    /// Layer by layer, the actor's before the critic's; last one without inputs, for what the loss
-    /// adds up: the gradient with respect to `log_std`, and [`SUMS`].
-    pub places: Vec<Place>,
+pub struct BatchLayout {
+    pub head: BatchHead,
+    /// The layers of one network after those of another; last one without inputs for the extras: the
+    /// gradients of the parameters behind the networks', then the objective's sums.
+    pub layers: Vec<LayerWords>,
 }
 
-impl Plan {
+impl BatchLayout {
+    /// Of networks given by their layers, each as inputs, outputs and activation; their parameters lie
+    /// one after another, and `parameters` are all there are. None for too many networks.
+    pub fn new(
+        networks: &[Vec<(usize, usize, u32)>],
+        parameters: usize,
+        sums: usize,
+        rows: usize,
+    ) -> Option<Self> {
+        if networks.len() > MAX_NETWORKS {
+            return None;
+        }
+        let (mut first_layer, mut outputs_before) = ([0; MAX_NETWORKS + 1], [0; MAX_NETWORKS + 1]);
+        let (mut layers, mut column, mut weights) = (Vec::new(), 0, 0);
+        for (network, list) in networks.iter().enumerate() {
+            let mut input_col = column;
+            column += list.first().map_or(0, |&(inputs, ..)| inputs);
+            for &(inputs, outputs, activation) in list {
+                layers.push(LayerWords {
+                    inputs: inputs as u32,
+                    outputs: outputs as u32,
+                    weights: weights as u32,
+                    input_col: input_col as u32,
+                    output_col: column as u32,
+                    activation,
+                });
+                weights += (inputs + 1) * outputs;
+                input_col = column;
+                column += outputs;
+            }
+            first_layer[network + 1] = layers.len() as u32;
+            let outputs = list.last().map_or(0, |&(_, outputs, _)| outputs);
+            outputs_before[network + 1] = outputs_before[network] + outputs as u32;
+        }
+        let extras = parameters - weights + sums;
+        layers.push(LayerWords {
+            inputs: 0,
+            outputs: extras as u32,
+            weights: weights as u32,
+            input_col: 0,
+            output_col: column as u32,
+            activation: IDENTITY,
+        });
+        let head = BatchHead {
+            rows: 0,
+            row_stride: (column + extras) as u32,
+            splits: 0,
+            split_blocks: 0,
+            parameters: parameters as u32,
+            sums: sums as u32,
+            networks: networks.len() as u32,
+            layers: layers.len() as u32,
+            first_layer,
+            outputs_before,
+        };
+        Some(BatchLayout { head, layers }.with_rows(rows))
+    }
+
+    /// The same networks for so many rows.
+    pub fn with_rows(mut self, rows: usize) -> Self {
+        let numbers = (self.head.parameters + self.head.sums) as usize;
+        let splits = (MAX_PARTIALS / numbers.max(1)).clamp(1, MAX_SPLITS);
+        self.head.rows = rows as u32;
+        let blocks = self.blocks();
+        let split_blocks = blocks.div_ceil(splits).next_multiple_of(SPLIT_BLOCKS);
+        self.head.split_blocks = split_blocks as u32;
+        self.head.splits = blocks.div_ceil(split_blocks) as u32;
+        self
+    }
+
     /// As shaders read it.
     pub fn words(&self) -> Vec<u32> {
         let mut words = bytemuck::cast_slice(&[self.head]).to_vec();
-        words.extend_from_slice(bytemuck::cast_slice(&self.places));
+        words.extend_from_slice(bytemuck::cast_slice(&self.layers));
         words
-    }
-
-    /// Where each parameter stands when weights are `[outputs][inputs]`.
-    pub fn turned(&self) -> Vec<u32> {
-        let mut turned: Vec<u32> = (0..self.head.parameters).collect();
-        for place in &self.places {
-            for input in 0..place.inputs {
-                for output in 0..place.outputs {
-                    let from = place.weights + input * place.outputs + output;
-                    turned[from as usize] = place.weights + output * place.inputs + input;
-                }
-            }
-        }
-        turned
-    }
-
-    /// The same networks, and pieces of the same size, for fewer rows.
-    pub fn fewer(&self, rows: usize) -> Plan {
-        let mut plan = self.clone();
-        plan.head.rows = rows as u32;
-        plan.head.pieces = (plan.blocks() as u32).div_ceil(plan.head.piece);
-        plan
     }
 
     /// Blocks of rows.
@@ -102,33 +158,45 @@ impl Plan {
 
     /// Numbers of all rows, the last block filled up.
     pub fn numbers(&self) -> usize {
-        self.blocks() * self.head.pitch as usize * BLOCK
+        self.blocks() * self.head.row_stride as usize * BLOCK
     }
 
-    /// Where among them a column of a row stands.
+    /// Numbers of all splits' gradients and sums.
+    pub fn partials(&self) -> usize {
+        self.head.splits as usize * (self.head.parameters + self.head.sums) as usize
+    }
+
+    /// Index of a column of a row among all numbers.
     pub fn at(&self, row: usize, column: usize) -> usize {
-        (row / BLOCK * self.head.pitch as usize + column) * BLOCK + row % BLOCK
+        (row / BLOCK * self.head.row_stride as usize + column) * BLOCK + row % BLOCK
     }
 
-    /// A network's layers, from below; 0 is the actor's, 1 the critic's.
-    pub(super) fn layers(
-        &self,
-        network: usize,
-    ) -> impl DoubleEndedIterator<Item = &Place> + ExactSizeIterator {
-        let both = &self.places[..self.places.len() - 1];
-        both[network..].iter().step_by(2)
+    /// A network's layers, from the first.
+    pub fn network(&self, network: usize) -> &[LayerWords] {
+        let [first, end] = [network, network + 1].map(|n| self.head.first_layer[n] as usize);
+        &self.layers[first..end]
+    }
+
+    /// Outputs of the networks `from..to`.
+    pub fn outputs(&self, from: usize, to: usize) -> usize {
+        (self.head.outputs_before[to] - self.head.outputs_before[from]) as usize
+    }
+
+    /// The extras' pseudo-layer.
+    pub fn extras(&self) -> &LayerWords {
+        &self.layers[self.layers.len() - 1]
     }
 }
 
-impl Place {
-    /// Inputs, outputs, where the weights begin, columns below and above.
-    pub(super) fn sizes(&self) -> [usize; 5] {
+impl LayerWords {
+    /// Inputs, outputs, where the weights begin, columns of inputs and outputs.
+    pub fn sizes(&self) -> [usize; 5] {
         [
             self.inputs,
             self.outputs,
             self.weights,
-            self.below,
-            self.above,
+            self.input_col,
+            self.output_col,
         ]
         .map(|size| size as usize)
     }

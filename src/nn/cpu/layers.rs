@@ -1,157 +1,173 @@
-//! A chunk of samples through layers after each other, and back, on one core.
+//! A layer for some rows on one core: forward, and the gradients backward.
 
-use super::kernels::{Forward, InputGradient, WeightGradient, tile};
+use super::matmul::{Matrix, add_product};
+use super::microkernel::{Forward, InputGradient, WeightGradient, microkernel};
 use super::tanh::tanh;
-use crate::nn::layer::{Bend, Layer, floats};
-use crate::nn::network::Place;
+use crate::nn::layer::{Activation, Layer};
+use crate::nn::network::LayerParams;
 
-/// Activations of every layer, `[samples][height][width][filters]`, from `input`,
-/// `[samples][height][width][channels]`.
-pub fn forward(places: &[Place], flat: &[f32], input: &[f32], samples: usize) -> Vec<Vec<f32>> {
-    let mut activations: Vec<Vec<f32>> = Vec::with_capacity(places.len());
-    for place in places {
-        let input = activations.last().map_or(input, |below| below);
-        let mut output = vec![0.0; samples * floats(place.layer.outputs())];
-        let parameters = (&flat[place.weights()], &flat[place.biases()]);
-        activate(&place.layer, parameters, input, &mut output, samples);
-        activations.push(output);
-    }
-    activations
+/// Dense layers with at least so many inputs and outputs are products of matrices; what is narrower fits
+/// the registers.
+const WIDE: usize = 96;
+
+/// Whether a layer is computed as a product of matrices.
+pub fn is_wide(layer: &Layer) -> bool {
+    layer.is_dense() && layer.patch().min(layer.filters()) >= WIDE
 }
 
-fn activate(
-    layer: &Layer,
-    (weights, biases): (&[f32], &[f32]),
-    input: &[f32],
-    output: &mut [f32],
-    samples: usize,
-) {
-    let starts = layer.starts(samples);
-    let mut kernel = Forward {
-        starts: &starts,
-        run: layer.run(),
-        pitch: layer.pitch(),
-        input,
-        weights,
-        biases,
-        least: match layer.bend() {
-            Bend::Relu => 0.0,
-            Bend::Tanh | Bend::None => f32::NEG_INFINITY,
-        },
-        output,
-    };
-    tile(&mut kernel, starts.len(), layer.filters());
-    if layer.bend() == Bend::Tanh {
-        tanh(output);
-    }
-}
-
-/// Adds the gradients of every layer's parameters to `sums`, which begins with the parameter `first`
-/// of the flat vector; from the weights as [`transpose`] leaves them, the input and activations as in
-/// [`forward`], and the `gradient` with respect to the last activations. The activations of the last
-/// layer may be missing if it does not bend. Returns the gradient with respect to the input, if it is
-/// `wanted`.
-pub fn backward(
-    (places, transposed): (&[Place], &[Vec<f32>]),
-    (input, activations): (&[f32], &[Vec<f32>]),
-    mut gradient: Vec<f32>,
-    wanted: bool,
-    (sums, first): (&mut [f32], usize),
-) -> Vec<f32> {
-    for (i, place) in places.iter().enumerate().rev() {
-        let layer = &place.layer;
-        if let Some(activations) = activations.get(i) {
-            unbend(layer.bend(), &mut gradient, activations);
+/// Outputs `[rows][height][width][filters]` from inputs `[rows][height][width][channels]`.
+pub fn forward(params: &LayerParams, flat: &[f32], input: &[f32], rows: usize) -> Vec<f32> {
+    let layer = &params.layer;
+    let (weights, biases) = (&flat[params.weights()], &flat[params.biases()]);
+    let mut output = Vec::new();
+    if is_wide(layer) {
+        output = biases.repeat(rows);
+        add_product(
+            &mut output,
+            Matrix::rows(input, layer.patch()),
+            Matrix::rows(weights, layer.filters()),
+        );
+        if layer.activation() == Activation::Relu {
+            output.iter_mut().for_each(|sum| *sum = sum.max(0.0));
         }
-        let starts = layer.starts(gradient.len() / floats(layer.outputs()));
-        let input = i.checked_sub(1).map_or(input, |below| &activations[below]);
-        let [weights, biases] =
-            [place.weights(), place.biases()].map(|range| range.start - first..range.end - first);
-        weight_gradient(layer, &starts, input, &gradient, &mut sums[weights]);
-        bias_gradient(layer, &gradient, &mut sums[biases]);
-        if i > 0 || wanted {
-            gradient = input_gradient(layer, &starts, &transposed[i], &gradient, input.len());
-        }
+    } else {
+        let offsets = layer.patch_offsets(rows);
+        output.resize(rows * layer.output_len(), 0.0);
+        let mut kernel = Forward {
+            patch_offsets: &offsets,
+            patch_row_len: layer.patch_row_len(),
+            row_stride: layer.row_stride(),
+            input,
+            weights,
+            biases,
+            least: match layer.activation() {
+                Activation::Relu => 0.0,
+                Activation::Tanh | Activation::Identity => f32::NEG_INFINITY,
+            },
+            output: &mut output,
+        };
+        microkernel(&mut kernel, offsets.len(), layer.filters());
     }
-    gradient
+    if layer.activation() == Activation::Tanh {
+        tanh(&mut output);
+    }
+    output
 }
 
-/// The gradient before the bend from that after it.
-fn unbend(bend: Bend, gradient: &mut [f32], activations: &[f32]) {
+/// Makes the gradient with respect to sums from that with respect to the `activations` they became.
+pub fn activation_backward(kind: Activation, gradient: &mut [f32], activations: &[f32]) {
     let pairs = gradient.iter_mut().zip(activations);
-    match bend {
-        Bend::Relu => {
-            pairs.for_each(|(gradient, &a)| *gradient = if a > 0.0 { *gradient } else { 0.0 })
+    match kind {
+        Activation::Relu => {
+            pairs.for_each(|(gradient, &a)| *gradient = if a > 0.0 { *gradient } else { 0.0 });
         }
-        Bend::Tanh => pairs.for_each(|(gradient, &a)| *gradient *= 1.0 - a * a),
-        Bend::None => {}
+        Activation::Tanh => pairs.for_each(|(gradient, &a)| *gradient *= 1.0 - a * a),
+        Activation::Identity => {}
     }
 }
 
-/// Weights `[size][filters][run]`.
-pub fn transpose(layer: &Layer, weights: &[f32]) -> Vec<f32> {
-    let (run, filters) = (layer.run(), layer.filters());
+/// The weights of a narrow layer as `[size][filters][patch row]`; none of a wide one.
+pub fn transpose(params: &LayerParams, flat: &[f32]) -> Vec<f32> {
+    let (length, filters) = (params.layer.patch_row_len(), params.layer.filters());
+    if is_wide(&params.layer) {
+        return Vec::new();
+    }
+    let weights = &flat[params.weights()];
     let mut transposed = vec![0.0; weights.len()];
-    let rows = weights.chunks_exact(run * filters);
-    for (row, out) in rows.zip(transposed.chunks_exact_mut(run * filters)) {
+    let rows = weights.chunks_exact(length * filters);
+    for (row, out) in rows.zip(transposed.chunks_exact_mut(length * filters)) {
         for (i, weights) in row.chunks_exact(filters).enumerate() {
             for (filter, &weight) in weights.iter().enumerate() {
-                out[filter * run + i] = weight;
+                out[filter * length + i] = weight;
             }
         }
     }
     transposed
 }
 
-fn weight_gradient(
+/// Adds the gradients of a narrow layer's weights and biases to `sums`, given those of its sums.
+pub fn add_gradient(layer: &Layer, input: &[f32], gradient: &[f32], sums: &mut [f32]) {
+    let (length, filters) = (layer.patch_row_len(), layer.filters());
+    let offsets = layer.patch_offsets(gradient.len() / layer.output_len());
+    let (weights, biases) = sums.split_at_mut(layer.patch() * filters);
+    for (y, output) in weights.chunks_exact_mut(length * filters).enumerate() {
+        let mut kernel = WeightGradient {
+            patch_offsets: &offsets,
+            filters,
+            input: &input[y * layer.row_stride()..],
+            gradient,
+            output,
+        };
+        microkernel(&mut kernel, length, filters);
+    }
+    add_columns(gradient, biases);
+}
+
+/// Adds the gradients of some rows of a wide layer's weights, the inputs from `first` on, to `sums`.
+/// Behind the last weights stand the biases.
+pub fn add_wide_gradient(
     layer: &Layer,
-    starts: &[usize],
+    first: usize,
     input: &[f32],
     gradient: &[f32],
     sums: &mut [f32],
 ) {
-    let (run, filters) = (layer.run(), layer.filters());
-    for (y, output) in sums.chunks_exact_mut(run * filters).enumerate() {
-        let mut kernel = WeightGradient {
-            starts,
-            filters,
-            input: &input[y * layer.pitch()..],
-            gradient,
-            output,
-        };
-        tile(&mut kernel, run, filters);
+    let inputs = (layer.patch() - first).min(sums.len() / layer.filters());
+    let (weights, biases) = sums.split_at_mut(inputs * layer.filters());
+    if inputs > 0 {
+        let inputs = Matrix::rows(input, layer.patch()).columns(first, inputs);
+        add_product(
+            weights,
+            inputs.transposed(),
+            Matrix::rows(gradient, layer.filters()),
+        );
+    }
+    if !biases.is_empty() {
+        add_columns(gradient, biases);
     }
 }
 
 /// A bias is the weight of an input that is always one.
-fn bias_gradient(layer: &Layer, gradient: &[f32], sums: &mut [f32]) {
-    for gradient in gradient.chunks_exact(layer.filters()) {
-        for (sum, gradient) in sums.iter_mut().zip(gradient) {
-            *sum += gradient;
+fn add_columns(rows: &[f32], sums: &mut [f32]) {
+    for row in rows.chunks_exact(sums.len()) {
+        for (sum, value) in sums.iter_mut().zip(row) {
+            *sum += value;
         }
     }
 }
 
-/// The gradient with respect to a layer's input, of `length` floats.
-fn input_gradient(
-    layer: &Layer,
-    starts: &[usize],
+/// The gradient with respect to a layer's input, of `length` numbers, given that of its sums. `transposed`
+/// are the weights as [`transpose`] leaves them.
+pub fn input_gradient(
+    params: &LayerParams,
+    flat: &[f32],
     transposed: &[f32],
     gradient: &[f32],
     length: usize,
 ) -> Vec<f32> {
-    let (run, filters) = (layer.run(), layer.filters());
+    let layer = &params.layer;
+    let (patch_row_len, filters) = (layer.patch_row_len(), layer.filters());
     let mut output = vec![0.0; length];
-    for (y, weights) in transposed.chunks_exact(run * filters).enumerate() {
+    if is_wide(layer) {
+        let weights = Matrix::rows(&flat[params.weights()], filters);
+        add_product(
+            &mut output,
+            Matrix::rows(gradient, filters),
+            weights.transposed(),
+        );
+        return output;
+    }
+    let offsets = layer.patch_offsets(gradient.len() / layer.output_len());
+    for (y, weights) in transposed.chunks_exact(patch_row_len * filters).enumerate() {
         let mut kernel = InputGradient {
-            starts,
-            run,
+            patch_offsets: &offsets,
+            patch_row_len,
             filters,
             weights,
             gradient,
-            output: &mut output[y * layer.pitch()..],
+            output: &mut output[y * layer.row_stride()..],
         };
-        tile(&mut kernel, starts.len(), run);
+        microkernel(&mut kernel, offsets.len(), patch_row_len);
     }
     output
 }

@@ -1,6 +1,6 @@
 //! Products of matrices, one of which is made of patches read where they lie in the input.
 //!
-//! [`tile`] cuts a matrix of results into blocks of rows by SIMD lanes; a [`Kernel`] adds up one
+//! [`microkernel`] cuts a matrix of results into blocks of rows by SIMD lanes; a [`GemmKernel`] adds up one
 //! block in vector registers and then stores it. Summing and storing are apart, and blocks have
 //! no more than eight rows, because only then does the compiler keep the sums in registers.
 
@@ -9,7 +9,7 @@ use multiversion::{multiversion, target::target_cfg_f};
 /// A block of a matrix of results.
 type Sums<const ROWS: usize, const LANES: usize> = [[f32; LANES]; ROWS];
 
-pub trait Kernel {
+pub trait GemmKernel {
     /// Sums of the block of which `row` and `lane` are the first.
     fn sums<const ROWS: usize, const LANES: usize>(
         &self,
@@ -27,7 +27,7 @@ pub trait Kernel {
     "x86_64+avx2+fma",
     "aarch64+neon"
 ))]
-pub fn tile<K: Kernel>(kernel: &mut K, rows: usize, lanes: usize) {
+pub fn microkernel<K: GemmKernel>(kernel: &mut K, rows: usize, lanes: usize) {
     let mut lane = 0;
     if target_cfg_f!(target_feature = "avx512f") {
         while lanes - lane >= 32 {
@@ -58,7 +58,7 @@ pub fn tile<K: Kernel>(kernel: &mut K, rows: usize, lanes: usize) {
 
 #[inline(always)]
 fn column<const ROWS: usize, const LANES: usize>(
-    kernel: &mut impl Kernel,
+    kernel: &mut impl GemmKernel,
     rows: usize,
     lane: usize,
 ) {
@@ -72,7 +72,7 @@ fn column<const ROWS: usize, const LANES: usize>(
 }
 
 #[inline(always)]
-fn block<const ROWS: usize, const LANES: usize>(kernel: &mut impl Kernel, row: usize, lane: usize) {
+fn block<const ROWS: usize, const LANES: usize>(kernel: &mut impl GemmKernel, row: usize, lane: usize) {
     let sums = kernel.sums::<ROWS, LANES>(row, lane);
     for (r, sums) in sums.iter().enumerate() {
         kernel.store(row + r, lane, sums);
@@ -81,19 +81,19 @@ fn block<const ROWS: usize, const LANES: usize>(kernel: &mut impl Kernel, row: u
 
 /// Activations: output pixels by filters.
 pub struct Forward<'a> {
-    pub starts: &'a [usize],
-    pub run: usize,
-    pub pitch: usize,
+    pub patch_offsets: &'a [usize],
+    pub patch_row_len: usize,
+    pub row_stride: usize,
     pub input: &'a [f32],
-    /// `[size][run][filters]`
+    /// `[size][patch_row_len][filters]`
     pub weights: &'a [f32],
     pub biases: &'a [f32],
-    /// Smaller sums are raised to it.
+    /// Smaller sums are raised to this.
     pub least: f32,
     pub output: &'a mut [f32],
 }
 
-impl Kernel for Forward<'_> {
+impl GemmKernel for Forward<'_> {
     #[inline(always)]
     fn sums<const ROWS: usize, const LANES: usize>(
         &self,
@@ -101,10 +101,10 @@ impl Kernel for Forward<'_> {
         lane: usize,
     ) -> Sums<ROWS, LANES> {
         let filters = self.biases.len();
-        let starts = array::<ROWS, _>(self.starts, row);
+        let patch_offsets = array::<ROWS, _>(self.patch_offsets, row);
         let mut sums = [*array(self.biases, lane); ROWS];
-        for (y, weights) in self.weights.chunks_exact(self.run * filters).enumerate() {
-            let patches = starts.map(|start| &self.input[start + y * self.pitch..][..self.run]);
+        for (y, weights) in self.weights.chunks_exact(self.patch_row_len * filters).enumerate() {
+            let patches = patch_offsets.map(|offset| &self.input[offset + y * self.row_stride..][..self.patch_row_len]);
             accumulate(&mut sums, patches, weights, filters, lane);
         }
         sums
@@ -120,7 +120,7 @@ impl Kernel for Forward<'_> {
 
 /// Gradient of a row of the filters' weights: floats of a row of a patch by filters.
 pub struct WeightGradient<'a> {
-    pub starts: &'a [usize],
+    pub patch_offsets: &'a [usize],
     pub filters: usize,
     pub input: &'a [f32],
     /// `[pixels][filters]`
@@ -129,7 +129,7 @@ pub struct WeightGradient<'a> {
     pub output: &'a mut [f32],
 }
 
-impl Kernel for WeightGradient<'_> {
+impl GemmKernel for WeightGradient<'_> {
     #[inline(always)]
     fn sums<const ROWS: usize, const LANES: usize>(
         &self,
@@ -138,11 +138,11 @@ impl Kernel for WeightGradient<'_> {
     ) -> Sums<ROWS, LANES> {
         let mut sums = [[0.0; LANES]; ROWS];
         let pixels = self.gradient.chunks_exact(self.filters);
-        for (start, gradient) in self.starts.iter().zip(pixels) {
-            let values = array::<ROWS, _>(self.input, start + row);
+        for (offset, gradient) in self.patch_offsets.iter().zip(pixels) {
+            let values = array::<ROWS, _>(self.input, offset + row);
             let gradient = array(gradient, lane);
             for r in 0..ROWS {
-                fused(&mut sums[r], values[r], gradient);
+                fma_row(&mut sums[r], values[r], gradient);
             }
         }
         sums
@@ -156,10 +156,10 @@ impl Kernel for WeightGradient<'_> {
 
 /// Gradient with respect to the input: output pixels by floats of a row of their patches.
 pub struct InputGradient<'a> {
-    pub starts: &'a [usize],
-    pub run: usize,
+    pub patch_offsets: &'a [usize],
+    pub patch_row_len: usize,
     pub filters: usize,
-    /// `[filters][run]`
+    /// `[filters][patch_row_len]`
     pub weights: &'a [f32],
     /// `[pixels][filters]`
     pub gradient: &'a [f32],
@@ -167,7 +167,7 @@ pub struct InputGradient<'a> {
     pub output: &'a mut [f32],
 }
 
-impl Kernel for InputGradient<'_> {
+impl GemmKernel for InputGradient<'_> {
     #[inline(always)]
     fn sums<const ROWS: usize, const LANES: usize>(
         &self,
@@ -177,13 +177,13 @@ impl Kernel for InputGradient<'_> {
         let mut sums = [[0.0; LANES]; ROWS];
         let gradient = &self.gradient[row * self.filters..];
         let pixels = std::array::from_fn(|r| &gradient[r * self.filters..][..self.filters]);
-        accumulate(&mut sums, pixels, self.weights, self.run, lane);
+        accumulate(&mut sums, pixels, self.weights, self.patch_row_len, lane);
         sums
     }
 
     #[inline(always)]
     fn store<const LANES: usize>(&mut self, row: usize, lane: usize, sums: &[f32; LANES]) {
-        add(self.output, self.starts[row] + lane, sums);
+        add(self.output, self.patch_offsets[row] + lane, sums);
     }
 }
 
@@ -203,13 +203,13 @@ fn accumulate<const ROWS: usize, const LANES: usize>(
     for (term, weights) in weights.chunks_exact(width).enumerate() {
         let weights = array(weights, lane);
         for r in 0..ROWS {
-            fused(&mut sums[r], values[r][term], weights);
+            fma_row(&mut sums[r], values[r][term], weights);
         }
     }
 }
 
 #[inline(always)]
-fn fused<const LANES: usize>(sums: &mut [f32; LANES], value: f32, weights: &[f32; LANES]) {
+fn fma_row<const LANES: usize>(sums: &mut [f32; LANES], value: f32, weights: &[f32; LANES]) {
     for (sum, weight) in sums.iter_mut().zip(weights) {
         *sum = value.mul_add(*weight, *sum);
     }

@@ -1,5 +1,7 @@
 //! Between tensors and plain arrays on the host.
 
+use crate::gpu::tensor::{from_buffer, to_buffer};
+use crate::gpu::{Array, Gpu};
 use burn::tensor::{Device, Tensor, TensorData};
 
 /// A tensor's values, copied to the host: waits for the device.
@@ -35,27 +37,48 @@ pub fn vector(values: &[f32], device: &Device) -> Tensor<1> {
 /// Numbers summed by one invocation: lavapipe's stop, silently, after 65,535.
 const ROW: usize = 512;
 
-/// The sum of a vector, `[1]`, in two stages. burn's own walks a long vector in few invocations, of
-/// which lavapipe leaves the rest out.
+/// The sum of a vector, `[1]`.
 pub fn sum(values: Tensor<1>) -> Tensor<1> {
-    let length = values.dims()[0];
-    let whole = length / ROW * ROW;
-    if whole == 0 {
-        return values.sum_dim(0);
-    }
-    let rows: Tensor<2> = values
-        .clone()
-        .narrow(0, 0, whole)
-        .reshape([whole / ROW, ROW]);
-    let sum = rows.sum_dim(1).sum_dim(0).squeeze_dim(1);
-    match whole == length {
-        true => sum,
-        false => sum.add(values.narrow(0, whole, length - whole).sum_dim(0)),
-    }
+    column_sums(values.unsqueeze_dim(1))
 }
 
 /// The mean of a vector, `[1]`.
 pub fn mean(values: Tensor<1>) -> Tensor<1> {
     let length = values.dims()[0];
     sum(values).mul_scalar(1.0 / length as f64)
+}
+
+/// The sums of the columns of `[n, width]`, in two stages: burn's own walks a long column in few
+/// invocations, of which lavapipe leaves the rest out.
+pub fn column_sums(values: Tensor<2>) -> Tensor<1> {
+    let [length, width] = values.dims();
+    let whole = length / ROW * ROW;
+    if whole == 0 {
+        return values.sum_dim(0).squeeze_dim(0);
+    }
+    let rows: Tensor<3> = values
+        .clone()
+        .narrow(0, 0, whole)
+        .reshape([whole / ROW, ROW, width]);
+    let sums = rows.sum_dim(1).sum_dim(0).reshape([width]);
+    match whole == length {
+        true => sums,
+        false => sums.add(
+            values
+                .narrow(0, whole, length - whole)
+                .sum_dim(0)
+                .squeeze_dim(0),
+        ),
+    }
+}
+
+/// Writes a tensor's values into an array from the index `at` on. In place where nobody else holds the
+/// array's memory.
+pub fn write<const D: usize>(gpu: &Gpu, values: Tensor<D>, out: &mut Array, at: usize) {
+    let buffer = std::mem::replace(out, Array::Host(Vec::new()));
+    let tensor: Tensor<1> = from_buffer(gpu, buffer.buffer(), [buffer.len()]);
+    drop(buffer);
+    let count = values.shape().num_elements();
+    let tensor = tensor.slice_assign([at..at + count], values.reshape([count]));
+    *out = Array::Gpu(to_buffer(tensor));
 }

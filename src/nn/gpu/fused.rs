@@ -1,0 +1,200 @@
+//! Narrow dense networks by custom WGSL kernels: one launch for all layers of all networks, and a gradient
+//! in four and the objective's.
+
+use crate::gpu::{Array, Buffer, Device, Gpu};
+use crate::kernels::learn::network::{BatchLayout, IDENTITY, MAX_ROWS, RELU, TANH};
+use crate::kernels::learn::{backward, forward, gradient, reduce_grads};
+use crate::nn::engine::{EngineSize, Rows};
+use crate::nn::layer::Activation;
+use crate::nn::network::Network;
+use crate::nn::objective::{GpuBatch, Objective};
+
+/// The widest layer; wider ones are quicker as products of matrices.
+const MAX_WIDTH: usize = 128;
+/// The most rows evaluated at once: 13 MB in networks like the presets'.
+const AT_ONCE: usize = 1 << 14;
+
+/// What dense networks need on the device, made once.
+pub struct Fused {
+    gpu: Gpu,
+    networks: usize,
+    /// To evaluate with.
+    forward: Layout,
+    /// To learn with, one for each size of a minibatch that there was.
+    minibatch: Vec<Layout>,
+    /// As [`BatchLayout::at`] says.
+    rows: Buffer<f32>,
+    grads: Buffer<f32>,
+    /// `[rows][outputs]` of each network, and the gradients with respect to them.
+    outputs: Buffer<f32>,
+    output_grads: Buffer<f32>,
+    /// `[rows][extras]`
+    extras: Buffer<f32>,
+    /// `[splits][parameters + sums]`
+    partials: Buffer<f32>,
+}
+
+/// A layout on the host and on the device.
+struct Layout {
+    host: BatchLayout,
+    table: Buffer<u32>,
+}
+
+impl Layout {
+    fn new(gpu: &Gpu, host: BatchLayout) -> Self {
+        let table = Buffer::from_slice(gpu, &host.words());
+        Layout { host, table }
+    }
+}
+
+impl Fused {
+    /// None if a layer is not dense or too wide, or what a minibatch needs too large for the device.
+    pub fn new(gpu: &Gpu, networks: &[Network], size: EngineSize) -> Option<Self> {
+        let layers = networks.iter().map(dense).collect::<Option<Vec<_>>>()?;
+        let layout = BatchLayout::new(&layers, size.parameters, size.sums, size.minibatch)?;
+        let forward = layout.clone().with_rows(size.max_rows.clamp(1, AT_ONCE));
+        let device = Device::from(gpu.clone());
+        let rows = forward.numbers().max(layout.numbers());
+        device.holds("rows", rows).ok()?;
+        if size.minibatch > MAX_ROWS {
+            return None;
+        }
+        let empty = |length: usize| Buffer::empty(gpu, length.max(1));
+        let outputs = size.minibatch * layout.outputs(0, networks.len());
+        Some(Fused {
+            networks: networks.len(),
+            rows: empty(rows),
+            grads: empty(layout.numbers()),
+            outputs: empty(outputs),
+            output_grads: empty(outputs),
+            extras: empty(size.minibatch * layout.extras().outputs as usize),
+            partials: empty(layout.partials()),
+            forward: Layout::new(gpu, forward),
+            minibatch: vec![Layout::new(gpu, layout)],
+            gpu: gpu.clone(),
+        })
+    }
+
+    pub fn forward(
+        &self,
+        network: usize,
+        parameters: &Array,
+        rows: Rows,
+        out: &mut Array,
+        out_at: usize,
+    ) {
+        let outputs = self.forward.host.outputs(network, network + 1);
+        let most = self.forward.host.head.rows as usize;
+        for start in (0..rows.count).step_by(most) {
+            let params = forward::Params {
+                rows: most.min(rows.count - start) as u32,
+                start: (rows.first + start) as u32,
+                width: rows.width as u32,
+                network: network as u32,
+                out_at: (out_at + start * outputs) as u32,
+            };
+            forward::launch(
+                &self.gpu,
+                1,
+                &self.forward.table,
+                rows.values.buffer(),
+                parameters.buffer(),
+                &self.rows,
+                out.buffer(),
+                &params,
+            );
+        }
+    }
+
+    pub fn gradient(
+        &mut self,
+        parameters: &Array,
+        rows: Rows,
+        objective: &dyn Objective,
+        gradient: &mut Array,
+        sums: &mut Array,
+        begin: bool,
+    ) {
+        let number = self.layout(rows.count);
+        let (gpu, table) = (&self.gpu, &self.minibatch[number].table);
+        let (samples, parameters) = (rows.values.buffer(), parameters.buffer());
+        let params = forward::Params {
+            rows: rows.count as u32,
+            start: rows.first as u32,
+            width: rows.width as u32,
+            network: 0,
+            out_at: 0,
+        };
+        let (activations, outputs) = (&self.rows, &self.outputs);
+        forward::launch(
+            gpu,
+            self.networks,
+            table,
+            samples,
+            parameters,
+            activations,
+            outputs,
+            &params,
+        );
+        let batch = GpuBatch {
+            samples,
+            width: rows.width,
+            first: rows.first,
+            rows: rows.count,
+            parameters,
+            outputs,
+            output_grads: &self.output_grads,
+            extras: &self.extras,
+        };
+        objective.launch(gpu, &batch);
+        let params = backward::Params {
+            rows: rows.count as u32,
+        };
+        backward::launch(
+            gpu,
+            self.networks,
+            table,
+            parameters,
+            activations,
+            &self.output_grads,
+            &self.extras,
+            &self.grads,
+            &params,
+        );
+        let groups = gradient::groups(&self.minibatch[number].host);
+        gradient::launch(gpu, groups, table, activations, &self.grads, &self.partials);
+        let (gradient, sums) = (gradient.buffer(), sums.buffer());
+        let begin = reduce_grads::Params {
+            begin: u32::from(begin),
+        };
+        reduce_grads::launch(gpu, table, &self.partials, gradient, sums, &begin);
+    }
+
+    /// Number of the layout for so many rows.
+    fn layout(&mut self, rows: usize) -> usize {
+        let of_size = |layout: &Layout| layout.host.head.rows as usize == rows;
+        self.minibatch.iter().position(of_size).unwrap_or_else(|| {
+            let host = self.minibatch[0].host.clone().with_rows(rows);
+            self.minibatch.push(Layout::new(&self.gpu, host));
+            self.minibatch.len() - 1
+        })
+    }
+}
+
+/// Inputs, outputs and activation of every layer, if all are dense and narrow.
+fn dense(network: &Network) -> Option<Vec<(usize, usize, u32)>> {
+    let layer = |params: &crate::nn::network::LayerParams| {
+        let layer = &params.layer;
+        let (inputs, outputs) = (layer.patch(), layer.filters());
+        let narrow = layer.is_dense() && inputs.max(outputs) <= MAX_WIDTH;
+        let activation = match layer.activation() {
+            Activation::Relu => RELU,
+            Activation::Tanh => TANH,
+            Activation::Identity => IDENTITY,
+        };
+        narrow.then_some((inputs, outputs, activation))
+    };
+    // An encoder's layers do not follow each other: the vector joins in between.
+    let layers = network.layers().iter().map(layer);
+    (!network.has_map_encoder()).then(|| layers.collect())?
+}

@@ -1,0 +1,305 @@
+//! Networks of any layers, one after another in burn's tensors: products of matrices and convolutions, whose
+//! gradients are taken by hand.
+
+use super::tensors::{column_sums, write};
+use crate::gpu::tensor::{from_buffer, to_buffer};
+use crate::gpu::{Array, Buffer, Device, Gpu};
+use crate::nn::engine::{EngineSize, Rows};
+use crate::nn::layer::{Activation, Layer};
+use crate::nn::network::{LayerParams, Network};
+use crate::nn::objective::{GpuBatch, Objective};
+use anyhow::Result;
+use burn::tensor::Tensor;
+use burn::tensor::activation::relu;
+use burn::tensor::module::{conv_transpose2d, conv2d, conv2d_weight_backward, linear};
+use burn::tensor::ops::{ConvOptions, ConvTransposeOptions};
+use std::ops::Range;
+
+/// The most numbers of what a layer makes of the rows that are evaluated at once (64 MB).
+const AT_ONCE: usize = 1 << 24;
+
+/// What the networks need on the device.
+pub struct Layerwise {
+    gpu: Gpu,
+    /// Parameters behind the networks', and all extras.
+    others: usize,
+    extras: usize,
+}
+
+impl Layerwise {
+    /// # Errors
+    /// What a minibatch needs is too large for the device.
+    pub fn new(gpu: &Gpu, networks: &[Network], size: EngineSize) -> Result<Self> {
+        let widest = networks.iter().map(widest).max().unwrap_or(0);
+        let device = Device::from(gpu.clone());
+        device.holds("activations of a minibatch", size.minibatch * widest)?;
+        let behind = networks.last().map_or(0, |last| last.span().end);
+        let others = size.parameters - behind;
+        Ok(Layerwise {
+            gpu: gpu.clone(),
+            others,
+            extras: others + size.sums,
+        })
+    }
+
+    pub fn forward(
+        &self,
+        network: &Network,
+        parameters: &Array,
+        rows: Rows,
+        out: &mut Array,
+        out_at: usize,
+    ) {
+        let most = (AT_ONCE / widest(network)).max(1);
+        let flat = self.flat(parameters);
+        let part = |start: usize| {
+            let rows = Rows {
+                first: rows.first + start,
+                count: most.min(rows.count - start),
+                ..rows
+            };
+            Pass::new(network, &flat, self.observations(network, rows)).1
+        };
+        for start in (0..rows.count).step_by(most) {
+            let at = out_at + start * network.outputs();
+            write(&self.gpu, part(start), out, at);
+        }
+    }
+
+    pub fn gradient(
+        &self,
+        networks: &[Network],
+        parameters: &Array,
+        rows: Rows,
+        objective: &dyn Objective,
+        gradient: &mut Array,
+        sums: &mut Array,
+        begin: bool,
+    ) {
+        let (gpu, count) = (&self.gpu, rows.count);
+        let flat = self.flat(parameters);
+        let pass = |network: &Network| Pass::new(network, &flat, self.observations(network, rows));
+        let (passes, outputs): (Vec<Pass>, Vec<Tensor<2>>) = networks.iter().map(pass).unzip();
+        let outputs = outputs.into_iter().map(|outputs| outputs.flatten(0, 1));
+        let outputs = to_buffer(Tensor::<1>::cat(outputs.collect(), 0));
+        let (output_grads, extras) = (
+            Buffer::empty(gpu, outputs.len()),
+            Buffer::empty(gpu, count * self.extras),
+        );
+        let batch = GpuBatch {
+            samples: rows.values.buffer(),
+            width: rows.width,
+            first: rows.first,
+            rows: count,
+            parameters: parameters.buffer(),
+            outputs: &outputs,
+            output_grads: &output_grads,
+            extras: &extras,
+        };
+        objective.launch(gpu, &batch);
+        let output_grads: Tensor<1> = from_buffer(gpu, &output_grads, [output_grads.len()]);
+        let mut parts = Vec::new();
+        let mut at = 0;
+        for (network, pass) in networks.iter().zip(&passes) {
+            let length = count * network.outputs();
+            let grads = output_grads.clone().narrow(0, at, length);
+            let grads = grads.reshape([count, network.outputs()]);
+            at += length;
+            parts.extend(pass.back(network, &flat, grads));
+        }
+        let extras = column_sums(from_buffer(gpu, &extras, [count, self.extras]));
+        if self.others > 0 {
+            parts.push(extras.clone().narrow(0, 0, self.others));
+        }
+        *gradient = Array::Gpu(to_buffer(Tensor::cat(parts, 0)));
+        if self.extras > self.others {
+            let new = extras.narrow(0, self.others, self.extras - self.others);
+            let new = match begin {
+                true => new,
+                false => new.add(from_buffer(gpu, sums.buffer(), [sums.len()])),
+            };
+            *sums = Array::Gpu(to_buffer(new));
+        }
+    }
+
+    fn flat(&self, parameters: &Array) -> Tensor<1> {
+        from_buffer(&self.gpu, parameters.buffer(), [parameters.len()])
+    }
+
+    /// `[rows, observation]`
+    fn observations(&self, network: &Network, rows: Rows) -> Tensor<2> {
+        let height = rows.values.len() / rows.width;
+        let all: Tensor<2> = from_buffer(&self.gpu, rows.values.buffer(), [height, rows.width]);
+        let observation = network.observation().dim();
+        all.slice([rows.first..rows.first + rows.count, 0..observation])
+    }
+}
+
+/// The most numbers that come out of a layer or go into one, for one row.
+fn widest(network: &Network) -> usize {
+    let lens = network.layers().iter();
+    let lens = lens.flat_map(|params| [params.layer.input_len(), params.layer.output_len()]);
+    lens.max().unwrap_or(1).max(network.observation().dim())
+}
+
+/// What a batch left on its way through a network.
+struct Pass {
+    /// Of every layer, `[rows, ..]`.
+    inputs: Vec<Tensor<2>>,
+}
+
+impl Pass {
+    /// Takes observations through a network. Returns the outputs, too.
+    fn new(network: &Network, flat: &Tensor<1>, observation: Tensor<2>) -> (Pass, Tensor<2>) {
+        let (encoder, vector) = (network.encoder_len(), network.observation().vector);
+        let maps = network.observation().dim() - vector;
+        let mut values = match encoder > 0 {
+            true => observation.clone().narrow(1, vector, maps),
+            false => observation.clone(),
+        };
+        let mut inputs = Vec::with_capacity(network.layers().len());
+        for (number, params) in network.layers().iter().enumerate() {
+            if number == encoder && encoder > 0 {
+                let vector = observation.clone().narrow(1, 0, vector);
+                values = Tensor::cat(vec![vector, values], 1);
+            }
+            inputs.push(values.clone());
+            values = forward(params, flat, values);
+        }
+        (Pass { inputs }, values)
+    }
+
+    /// The gradients of all parameters in their order, given that of the outputs.
+    fn back(&self, network: &Network, flat: &Tensor<1>, gradient: Tensor<2>) -> Vec<Tensor<1>> {
+        let mut parts = Vec::new();
+        let mut gradient = gradient;
+        for (number, params) in network.layers().iter().enumerate().rev() {
+            let input = &self.inputs[number];
+            parts.push(bias_gradient(&params.layer, gradient.clone()));
+            parts.push(weight_gradient(params, flat, input, &gradient));
+            let Some(below) = number.checked_sub(1) else {
+                break;
+            };
+            gradient = input_gradient(params, flat, gradient);
+            let mut activations = input.clone();
+            if number == network.encoder_len() {
+                // The vector joined here; it does not learn.
+                let vector = network.observation().vector;
+                let after = |values: Tensor<2>| {
+                    let width = values.dims()[1] - vector;
+                    values.narrow(1, vector, width)
+                };
+                (gradient, activations) = (after(gradient), after(activations));
+            }
+            let kind = network.layers()[below].layer.activation();
+            gradient = activation_backward(kind, gradient, activations);
+        }
+        parts.reverse();
+        parts
+    }
+}
+
+fn activation(kind: Activation, sums: Tensor<2>) -> Tensor<2> {
+    match kind {
+        Activation::Relu => relu(sums),
+        Activation::Tanh => sums.tanh(),
+        Activation::Identity => sums,
+    }
+}
+
+/// The gradient with respect to sums from that with respect to the `activations` they became.
+fn activation_backward(kind: Activation, gradient: Tensor<2>, activations: Tensor<2>) -> Tensor<2> {
+    match kind {
+        Activation::Relu => gradient.mul(activations.sign()),
+        Activation::Tanh => gradient.mul(activations.square().neg().add_scalar(1.0)),
+        Activation::Identity => gradient,
+    }
+}
+
+/// Outputs `[rows, height * width * filters]` from inputs `[rows, height * width * channels]`.
+fn forward(params: &LayerParams, flat: &Tensor<1>, input: Tensor<2>) -> Tensor<2> {
+    let layer = &params.layer;
+    let biases = Some(part(flat, params.biases()));
+    let sums = match layer.is_dense() {
+        true => linear(input, weights(params, flat), biases),
+        false => {
+            let images = images(input, layer.inputs());
+            images_to_rows(conv2d(images, filters(params, flat), biases, options(layer)))
+        }
+    };
+    activation(layer.activation(), sums)
+}
+
+fn bias_gradient(layer: &Layer, gradient: Tensor<2>) -> Tensor<1> {
+    let [rows, width] = gradient.dims();
+    let pixels = width / layer.filters();
+    column_sums(gradient.reshape([rows * pixels, layer.filters()]))
+}
+
+fn weight_gradient(
+    params: &LayerParams,
+    flat: &Tensor<1>,
+    input: &Tensor<2>,
+    gradient: &Tensor<2>,
+) -> Tensor<1> {
+    let layer = &params.layer;
+    if layer.is_dense() {
+        let product = input.clone().transpose().matmul(gradient.clone());
+        return product.flatten(0, 1);
+    }
+    let input = images(input.clone(), layer.inputs());
+    let gradient = images(gradient.clone(), layer.outputs());
+    let filters = filters(params, flat);
+    let gradient = conv2d_weight_backward(input, filters, gradient, options(layer));
+    gradient.permute([2, 3, 1, 0]).flatten(0, 3)
+}
+
+fn input_gradient(params: &LayerParams, flat: &Tensor<1>, gradient: Tensor<2>) -> Tensor<2> {
+    let layer = &params.layer;
+    if layer.is_dense() {
+        return gradient.matmul(weights(params, flat).transpose());
+    }
+    // Cells of the input that no filter reaches.
+    let [height, width, _] = layer.inputs();
+    let [rows, columns, _] = layer.outputs();
+    let over = |cells: usize, places: usize| cells - (places - 1) * layer.stride() - layer.size();
+    let over = [over(height, rows), over(width, columns)];
+    let options = ConvTransposeOptions::new([layer.stride(); 2], [0; 2], over, [1; 2], 1);
+    let gradient = images(gradient, layer.outputs());
+    images_to_rows(conv_transpose2d(gradient, filters(params, flat), None, options))
+}
+
+fn part(flat: &Tensor<1>, range: Range<usize>) -> Tensor<1> {
+    flat.clone().slice([range])
+}
+
+/// `[patch, filters]`
+fn weights(params: &LayerParams, flat: &Tensor<1>) -> Tensor<2> {
+    part(flat, params.weights()).reshape([params.layer.patch(), params.layer.filters()])
+}
+
+/// `[filters, channels, size, size]`
+fn filters(params: &LayerParams, flat: &Tensor<1>) -> Tensor<4> {
+    let (size, channels) = (params.layer.size(), params.layer.inputs()[2]);
+    let weights = part(flat, params.weights());
+    let weights: Tensor<4> = weights.reshape([size, size, channels, params.layer.filters()]);
+    weights.permute([3, 2, 0, 1])
+}
+
+fn options(layer: &Layer) -> ConvOptions<2> {
+    ConvOptions::new([layer.stride(); 2], [0; 2], [1; 2], 1)
+}
+
+/// `[rows, channels, height, width]` from rows with the channels last.
+fn images(rows: Tensor<2>, [height, width, channels]: [usize; 3]) -> Tensor<4> {
+    let samples = rows.dims()[0];
+    let images: Tensor<4> = rows.reshape([samples, height, width, channels]);
+    images.permute([0, 3, 1, 2])
+}
+
+/// The opposite of [`images`].
+fn images_to_rows(images: Tensor<4>) -> Tensor<2> {
+    let [samples, channels, height, width] = images.dims();
+    let images = images.permute([0, 2, 3, 1]);
+    images.reshape([samples, height * width * channels])
+}
