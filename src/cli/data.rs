@@ -1,9 +1,10 @@
 //! `footwork data`.
 
+use footwork::motion::features::MIN_FUTURE_FRAMES;
 use super::Usage;
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand, ValueEnum};
-use footwork::motion::database::{Database, MIN_FUTURE_FRAMES};
+use footwork::motion::database::Database;
 use footwork::motion::import::ImportOptions;
 use footwork::motion::normalise::Weights;
 use footwork::motion::{RATE, bvh, synthetic};

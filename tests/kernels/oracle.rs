@@ -1,7 +1,6 @@
 //! The nearest row by plain loops in f64, and what may differ from it.
 
-use footwork::motion::database::ROW_STRIDE;
-use footwork::motion::features::FEATURE_DIM;
+use footwork::motion::features::{FEATURE_DIM, ROW_STRIDE};
 use multiversion::multiversion;
 use rayon::prelude::*;
 use std::collections::HashMap;

@@ -6,8 +6,7 @@ use crate::inputs::{Draw, gpu};
 use crate::oracle::Oracle;
 use footwork::gpu::{Buffer, Gpu};
 use footwork::kernels::search::search_exact;
-use footwork::motion::database::ROW_STRIDE;
-use footwork::motion::features::{FEATURE_DIM, POSE_DIM};
+use footwork::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE};
 use footwork::motion::normalise::Weights;
 use footwork::matching::{Index, MEMORY};
 use footwork::train::data;
@@ -18,7 +17,7 @@ use std::sync::LazyLock;
 
 type Rows = Vec<[f32; ROW_STRIDE]>;
 
-/// Queries of each kind, those put to `search_tile` (slow on lavapipe) and to the slow twin.
+/// Queries of each kind, those put to `search_score_tiled` (slow on lavapipe) and to the slow twin.
 const ALL: usize = 10_000;
 const BY_TILE: usize = 1_000;
 const BY_TWIN: usize = 100;
@@ -149,7 +148,7 @@ fn by_twin(rows: &[[f32; ROW_STRIDE]], queries: &[[f32; ROW_STRIDE]]) -> Vec<u32
         count: queries.len() as u32,
         candidates: rows.len() as u32,
         block: 64,
-        longest: 0.0,
+        max_norm: 0.0,
     };
     search_exact::twin(rows, queries, &[], &mut found, &params);
     found

@@ -1,18 +1,17 @@
 //! The four kernels of the search by the index, each against its twin on the twin's inputs.
-//! Bars: `search_near` may prefer another group where two bounds are equal but for rounding, and its
-//! row is the nearest of that group all the same; `search_reach` may differ at leaves whose bound is
-//! the limit but for rounding; `search_leaves` finds the twin's candidates, and `search_pick` gives the
+//! Bars: `search_seed` may prefer another group where two bounds are equal but for rounding, and its
+//! row is the nearest of that group all the same; `search_prune` may differ at leaves whose bound is
+//! the limit but for rounding; `search_leaves` finds the twin's candidates, and `search_argmin` gives the
 //! twin's bits. Distances have eight roundings: adapters may or may not fuse products into sums.
 
 use crate::checked;
 use crate::inputs::{Draw, POISON, POISON_WHOLE, SIZES, close, gpu};
 use bytemuck::cast_slice;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::search::search_index::{ASKED, GROUP, LANES};
+use footwork::kernels::search::search_index::{PROJECTION_LEN, GROUP, LANES};
 use footwork::kernels::search::search_exact::squared;
 use footwork::kernels::search::{search_leaves, search_seed, search_argmin, search_prune};
-use footwork::motion::database::ROW_STRIDE;
-use footwork::motion::features::{FEATURE_DIM, POSE_DIM, TRAJECTORY_DIM};
+use footwork::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
 use footwork::matching::{Index, MEMORY, Packed};
 
 const ROUNDING: f32 = 4.0 * f32::EPSILON;
@@ -69,7 +68,7 @@ impl Case {
     fn poison(&self) -> Known {
         let lanes = LANES * self.count();
         Known {
-            asked: vec![POISON; ASKED * self.count()],
+            asked: vec![POISON; PROJECTION_LEN * self.count()],
             distance: vec![POISON; lanes],
             candidates: vec![POISON_WHOLE; lanes],
         }
@@ -81,7 +80,7 @@ impl Case {
             groups: self.packed.groups,
             frames: self.packed.frames,
             step: self.packed.step,
-            longest: self.packed.longest,
+            max_norm: self.packed.max_norm,
         }
     }
 
@@ -104,7 +103,7 @@ impl Case {
             first: 0,
             last: self.leaves() as u32,
             range: self.packed.range,
-            blur: self.packed.blur,
+            quantisation_error: self.packed.quantisation_error,
         }
     }
 
