@@ -8,7 +8,7 @@ use footwork::playback::player::{Feet, Style};
 use footwork::playback::quality::compare;
 use footwork::playback::stitch::Stitching;
 use footwork::playback::two_bone_ik::reach;
-use footwork::playback::{Player, Pose, Shown};
+use footwork::playback::{Player, CharacterPose, PlacedFrame};
 use footwork::train::controller::Scripted;
 use footwork::train::rendered_frames::shown;
 use footwork::env::locomotion::{Plane, Task};
@@ -23,12 +23,12 @@ static DATABASE: LazyLock<Arc<Database>> = LazyLock::new(|| {
 });
 static FEET: LazyLock<Arc<Feet>> = LazyLock::new(|| Arc::new(Feet::of(&DATABASE)));
 
-fn player(style: Style, from: Shown) -> Player {
+fn player(style: Style, from: PlacedFrame) -> Player {
     Player::new(DATABASE.clone(), FEET.clone(), style, from)
 }
 
-fn at(frame: usize) -> Shown {
-    Shown {
+fn at(frame: usize) -> PlacedFrame {
+    PlacedFrame {
         frame,
         at: [3.0, -2.0],
         heading: [0.6, -0.8],
@@ -36,7 +36,7 @@ fn at(frame: usize) -> Shown {
 }
 
 /// Largest distance between the joints of two poses, m.
-fn apart(a: &Pose, b: &Pose) -> f32 {
+fn apart(a: &CharacterPose, b: &CharacterPose) -> f32 {
     let [(a, _), (b, _)] = [a, b].map(|pose| pose.world(&DATABASE.skeleton));
     let distances = a.iter().zip(&b).map(|(a, b)| a.distance(*b));
     distances.fold(0.0, f32::max)
@@ -51,7 +51,7 @@ fn walking_on_is_the_recording_moved_as_a_whole() {
         for ahead in [1, 6, 25] {
             let later = at(frame).on(&DATABASE, ahead as isize).pose(&DATABASE);
             let moved = DATABASE.hips[frame + ahead] - DATABASE.hips[frame];
-            let recorded = Pose {
+            let recorded = CharacterPose {
                 root: begun.root + turn * moved,
                 rotations: (0..joints)
                     .map(|joint| {

@@ -10,8 +10,8 @@ use footwork::playback::stitch::Stitching;
 use footwork::train::controller::Trained;
 use footwork::view::image_files::{self, Output};
 use footwork::view::debug_draw::scene;
-use footwork::view::playthrough::{Rollout, Stage};
-use footwork::view::{Camera, Canvas, Renderer};
+use footwork::view::playthrough::{Playthrough, PlaythroughContext};
+use footwork::view::{Camera, RenderTarget, Renderer};
 use indicatif::ProgressIterator;
 use std::path::PathBuf;
 
@@ -129,15 +129,15 @@ impl Render {
         let output = self.check()?;
         let run = Run::open(&self.run, self.data.as_deref())?;
         let gpu = Gpu::drawing()?;
-        let stage = Stage::new(
+        let context = PlaythroughContext::new(
             run.database,
             run.checkpoint.header.task,
             self.joined.style(),
         );
         let mut film = Film {
-            rollout: Rollout::new(&stage, self.episode),
+            playthrough: Playthrough::new(&context, self.episode),
             policy: Trained::from(&run.checkpoint),
-            stage,
+            context,
             camera: Camera {
                 yaw: self.yaw.to_radians(),
                 pitch: self.pitch.to_radians(),
@@ -145,9 +145,9 @@ impl Render {
                 ..Camera::default()
             },
             renderer: Renderer::new(&gpu),
-            canvas: Canvas::new(&gpu.setup.device, self.size),
+            target: RenderTarget::new(&gpu.setup.device, self.size),
         };
-        film.camera.follow(film.rollout.shown.at, 1.0);
+        film.camera.follow(film.playthrough.shown.at, 1.0);
         film.skip((self.at * RATE as f32).round() as usize)?;
         let count = ((self.seconds * self.rate as f32).round() as usize).max(1);
         let between = (RATE / self.rate) as usize;
@@ -222,29 +222,29 @@ impl Render {
     }
 }
 
-/// A rollout before a camera.
+/// A playthrough before a camera.
 struct Film {
-    stage: Stage,
+    context: PlaythroughContext,
     policy: Trained,
-    rollout: Rollout,
+    playthrough: Playthrough,
     camera: Camera,
     renderer: Renderer,
-    canvas: Canvas,
+    target: RenderTarget,
 }
 
 impl Film {
     fn skip(&mut self, frames: usize) -> Result<()> {
         for _ in 0..frames {
-            self.rollout.advance(&self.stage, &self.policy)?;
-            self.camera.follow(self.rollout.shown.at, FOLLOW);
+            self.playthrough.advance(&self.context, &self.policy)?;
+            self.camera.follow(self.playthrough.shown.at, FOLLOW);
         }
         Ok(())
     }
 
     fn picture(&mut self) -> Result<Vec<u8>> {
-        let scene = scene(&self.rollout, &self.stage);
-        self.renderer.draw(&scene, None, &self.camera, &self.canvas);
-        self.canvas
+        let scene = scene(&self.playthrough, &self.context);
+        self.renderer.draw(&scene, None, &self.camera, &self.target);
+        self.target
             .read(&self.renderer.device, &self.renderer.queue)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::pca::PrincipalAxes;
 use super::pose_distance_table::{PoseDistanceTable, TableLayout};
-use super::tree::Tree;
+use super::tree::KdTree;
 use crate::container::{Arrays, Format, StoreError};
 use crate::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE};
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ pub const DEFAULT_TABLE_BYTES: usize = 128 << 20;
 /// The rows, sorted for pruning, and what is known of their poses.
 pub struct Index {
     pub(super) axes: PrincipalAxes,
-    pub(super) tree: Tree,
+    pub(super) tree: KdTree,
     pub(super) poses: PoseDistanceTable,
     /// Norm of the longest trajectory.
     pub(super) max_norm: f32,
@@ -39,7 +39,7 @@ impl Index {
     pub fn build(frames: &[[f32; ROW_STRIDE]], candidates: &[u32], table_bytes: usize) -> Self {
         let rows: Vec<_> = candidates.iter().map(|&at| frames[at as usize]).collect();
         let axes = PrincipalAxes::of(&rows);
-        let tree = Tree::build(&rows, &axes, None);
+        let tree = KdTree::build(&rows, &axes, None);
         let poses = PoseDistanceTable::build(frames, &tree, table_bytes);
         Self::join(&rows, axes, tree, poses)
     }
@@ -47,7 +47,7 @@ impl Index {
     fn join(
         rows: &[[f32; ROW_STRIDE]],
         axes: PrincipalAxes,
-        tree: Tree,
+        tree: KdTree,
         poses: PoseDistanceTable,
     ) -> Self {
         Index {
@@ -92,7 +92,7 @@ impl Index {
         }
         let rows: Vec<_> = candidates.iter().map(|&at| frames[at as usize]).collect();
         let axes = PrincipalAxes::of(&rows);
-        let tree = Tree::build(&rows, &axes, Some(order));
+        let tree = KdTree::build(&rows, &axes, Some(order));
         let poses = PoseDistanceTable::restore(
             header.shape,
             arrays.take("by_group")?,

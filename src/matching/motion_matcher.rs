@@ -23,25 +23,20 @@ impl MotionMatcher {
         MotionMatcher { database, index }
     }
 
-    /// Reads a database file and the index file beside it. Where there is none, or none of this
-    /// database, the index is built.
-    ///
-    /// # Errors
-    /// The database file is missing, damaged or something else.
-    pub fn load(path: &Path) -> Result<Self, StoreError> {
-        let database = Arc::new(Database::load(path)?);
+    /// Reads the index file beside the file at `path` that the database was read from. Where there is
+    /// none, or none of this database, the index is built.
+    pub fn open(database: Arc<Database>, path: &Path) -> Self {
         let (frames, candidates) = (&database.features, &database.candidates);
-        let beside = index_path(path);
-        Ok(match Index::load(&beside, database.fingerprint, frames, candidates) {
+        match Index::load(&index_path(path), database.fingerprint, frames, candidates) {
             Some(index) => MotionMatcher {
                 index: Arc::new(index),
                 database,
             },
             None => Self::new(database),
-        })
+        }
     }
 
-    /// Writes the index file beside the database file at `path`, to be found by [`MotionMatcher::load`].
+    /// Writes the index file beside the database file at `path`, to be found by [`MotionMatcher::open`].
     ///
     /// # Errors
     /// The file cannot be written.

@@ -8,7 +8,7 @@
 use super::quantised_boxes::{
     GridPoint, LANES, OutOfGrid, POSE_PAIRS, QuantisationGrid, QuantisedBoxes,
 };
-use super::tree::{self, LeafRows, Tree};
+use super::tree::{self, LeafRows, KdTree};
 use crate::motion::features::{POSE_DIM, ROW_STRIDE};
 use multiversion::multiversion;
 use rayon::prelude::*;
@@ -56,7 +56,7 @@ const ROUND_DOWN: f32 = 1.0 - 1e-5;
 impl PoseDistanceTable {
     /// Distances from all `frames` to the rows of `tree`, in at most `memory` bytes; if the coarsest
     /// table needs more, in that.
-    pub fn build(frames: &[[f32; ROW_STRIDE]], tree: &Tree, memory: usize) -> Self {
+    pub fn build(frames: &[[f32; ROW_STRIDE]], tree: &KdTree, memory: usize) -> Self {
         let groups = tree.leaf_boxes.len();
         // The block of every frame is part of it, and codes are padded to whole words.
         let memory = memory.saturating_sub(size_of::<u32>() * (frames.len() + 1));
@@ -117,7 +117,7 @@ impl PoseDistanceTable {
         mut by_group: Vec<u8>,
         by_leaf: Vec<[u8; LANES]>,
         frames: &[[f32; ROW_STRIDE]],
-        tree: &Tree,
+        tree: &KdTree,
     ) -> Option<Self> {
         if layout.block == 0 || layout.groups != tree.leaf_boxes.len() {
             return None;
@@ -344,7 +344,7 @@ impl PoseBoxes {
 }
 
 /// Boxes around the poses of all leaves, by group.
-fn leaf_boxes(tree: &Tree) -> Vec<PoseBoxes> {
+fn leaf_boxes(tree: &KdTree) -> Vec<PoseBoxes> {
     let bounds: Vec<PoseBounds> = tree.leaves.par_iter().map(PoseBounds::of_leaf).collect();
     bounds.chunks(LANES).map(PoseBoxes::pack).collect()
 }
@@ -490,7 +490,7 @@ mod tests {
                 })
             })
             .collect();
-        let tree = Tree::build(&frames, &PrincipalAxes::of(&frames), None);
+        let tree = KdTree::build(&frames, &PrincipalAxes::of(&frames), None);
         let (groups, step) = (tree.leaf_boxes.len(), code_step(&frames));
         let whole = PoseBounds::of_frames(&frames);
         let everywhere = PoseBoxes {

@@ -27,7 +27,7 @@ pub struct TrajectoryBoxes {
     pub high: TrajectoryCorners,
 }
 
-pub struct Tree {
+pub struct KdTree {
     /// `[groups * LANES]`
     pub leaves: Vec<LeafRows>,
     /// Original index of every row of every leaf.
@@ -50,7 +50,7 @@ type TrajectoryBox = [[f32; TRAJECTORY_DIM]; 2];
 /// The box around no point.
 const EMPTY: TrajectoryBox = [[f32::INFINITY; TRAJECTORY_DIM], [f32::NEG_INFINITY; TRAJECTORY_DIM]];
 
-impl Tree {
+impl KdTree {
     /// The tree of `rows`, of which there must be at least one; `order` is that of an earlier tree of the
     /// same rows, to save the sorting.
     pub fn build(rows: &[[f32; ROW_STRIDE]], axes: &PrincipalAxes, order: Option<Vec<u32>>) -> Self {
@@ -86,7 +86,7 @@ impl Tree {
         let [low, high] = regions.iter().copied().fold(EMPTY, union);
         let grid = QuantisationGrid::enclosing(&low, &high);
         let boxes = boxes.chunks(LANES).map(pack);
-        Tree {
+        KdTree {
             leaves,
             ids,
             leaf_boxes: boxes.map(|of| grid.quantise_boxes(&of.low, &of.high)).collect(),

@@ -26,7 +26,7 @@ pub const FRAMES_PER_STEP: usize = 6;
 const _: () = assert!(ROW_STRIDE >= FEATURE_DIM && ROW_STRIDE.is_multiple_of(4));
 
 /// The character's path on the ground and the features of every frame of a clip.
-pub struct Track {
+pub struct FeatureTrack {
     /// `[x, z]` of the smoothed root, m.
     pub ground: Vec<[f32; 2]>,
     /// Unit forward direction `[x, z]`.
@@ -59,7 +59,7 @@ impl Points {
 }
 
 /// Path and features of a clip of at least [`super::smooth::WINDOW`] frames.
-pub fn extract(clip: &Clip, roles: &Roles) -> Track {
+pub fn extract(clip: &Clip, roles: &Roles) -> FeatureTrack {
     let points: Vec<Points> = (0..clip.frames())
         .map(|frame| Points::of(clip, roles, frame))
         .collect();
@@ -79,7 +79,7 @@ pub fn extract(clip: &Clip, roles: &Roles) -> Track {
             row
         })
         .collect();
-    Track {
+    FeatureTrack {
         ground,
         heading,
         features,

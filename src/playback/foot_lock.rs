@@ -1,7 +1,7 @@
 //! Foot locking: a standing foot stays where it came down.
 
-use super::contact::{Contact, Sole};
-use super::inertialize::Fade;
+use super::contact::{FootContact, SolePoints};
+use super::inertialize::InertializedOffset;
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -23,18 +23,18 @@ pub struct FootLock {
     /// Of what was added to the foot in the last frame and in the one before, m.
     corrections: [Vec3; 2],
     /// What is left of the correction of a foot that stands no more, and frames since.
-    fade: Fade,
+    fade: InertializedOffset,
     age: f32,
 }
 
 /// A foot that stands, or steps to where it will.
 #[derive(Clone, Copy, Debug)]
 struct Hold {
-    contact: Contact,
+    contact: FootContact,
     /// Where the bearing point stands, on the ground, m; its height is the recording's.
     place: Vec3,
     /// From there to where it is shown.
-    step: Fade,
+    step: InertializedOffset,
     lift: f32,
     age: f32,
     /// Where it was shown last, m.
@@ -44,7 +44,7 @@ struct Hold {
 impl FootLock {
     /// What to add to the foot's position in the next frame, m: `sole` is where the stitched motion
     /// puts it, `recorded` where the recording has it.
-    pub fn next(&mut self, sole: &Sole, recorded: &Sole, contact: Contact) -> Vec3 {
+    pub fn next(&mut self, sole: &SolePoints, recorded: &SolePoints, contact: FootContact) -> Vec3 {
         self.age += 1.0;
         let correction = match (sole.point(contact), recorded.point(contact)) {
             (Some(point), Some(recorded)) => self.stand(point, recorded, contact),
@@ -54,7 +54,7 @@ impl FootLock {
         correction
     }
 
-    fn stand(&mut self, point: Vec3, recorded: Vec3, contact: Contact) -> Vec3 {
+    fn stand(&mut self, point: Vec3, recorded: Vec3, contact: FootContact) -> Vec3 {
         let near = |hold: &Hold| level(hold.place - recorded).length() <= NEAR;
         let held = self
             .held
@@ -72,7 +72,7 @@ impl FootLock {
 
     /// A foot comes down, or rolls from heel to toe, or the motion has jumped to one in which it stands
     /// elsewhere.
-    fn come_down(&mut self, point: Vec3, recorded: Vec3, contact: Contact) -> Hold {
+    fn come_down(&mut self, point: Vec3, recorded: Vec3, contact: FootContact) -> Hold {
         let shown = match self.held {
             Some(hold) if hold.contact == contact => hold.shown,
             _ => point + self.rest(),
@@ -83,9 +83,9 @@ impl FootLock {
         Hold {
             contact,
             place,
-            step: Fade {
+            step: InertializedOffset {
                 value: shown - place - Vec3::Y * recorded.y,
-                ..Fade::default()
+                ..InertializedOffset::default()
             },
             shown,
             lift: if far {
@@ -100,7 +100,7 @@ impl FootLock {
     /// The correction of a foot that is not held: the one it had when it was let go, fading.
     fn rest(&mut self) -> Vec3 {
         if self.held.take().is_some() {
-            self.fade = Fade {
+            self.fade = InertializedOffset {
                 value: self.corrections[0],
                 velocity: self.corrections[0] - self.corrections[1],
                 acceleration: Vec3::ZERO,

@@ -4,16 +4,16 @@ use glam::Vec3;
 
 /// A difference and its first two rates of change, per frame, at the moment it began to fade.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Fade {
+pub struct InertializedOffset {
     pub value: Vec3,
     pub velocity: Vec3,
     pub acceleration: Vec3,
 }
 
-impl Fade {
+impl InertializedOffset {
     /// From three values a frame apart; the fading begins at the middle one.
-    pub fn through(before: Vec3, now: Vec3, after: Vec3) -> Fade {
-        Fade {
+    pub fn through(before: Vec3, now: Vec3, after: Vec3) -> InertializedOffset {
+        InertializedOffset {
             value: now,
             velocity: 0.5 * (after - before),
             acceleration: after - 2.0 * now + before,
@@ -41,7 +41,7 @@ mod tests {
 
     #[test]
     fn begins_as_given_and_ends_at_rest() {
-        let fade = Fade {
+        let fade = InertializedOffset {
             value: Vec3::new(1.0, 0.0, 0.0),
             velocity: Vec3::new(0.0, 0.1, 0.0),
             acceleration: Vec3::new(0.0, 0.0, 0.02),

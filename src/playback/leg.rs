@@ -6,7 +6,7 @@ use crate::motion::skeleton::Skeleton;
 use glam::{Quat, Vec3};
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Leg {
+pub struct LegJoints {
     pub hip: usize,
     pub knee: usize,
     /// The ankle.
@@ -30,7 +30,7 @@ pub fn world(database: &Database, frame: usize) -> (Vec<Vec3>, Vec<Quat>) {
 const LEARNT: usize = 4096;
 
 /// The left leg and the right one.
-pub fn legs(database: &Database) -> [Leg; 2] {
+pub fn legs(database: &Database) -> [LegJoints; 2] {
     let Roles {
         left_hip,
         left_foot,
@@ -51,7 +51,7 @@ pub fn legs(database: &Database) -> [Leg; 2] {
     ]
     .map(|(hip, foot, toe)| {
         let knee = knee(&database.skeleton, hip, foot);
-        Leg {
+        LegJoints {
             hip,
             knee,
             foot,

@@ -1,10 +1,10 @@
 //! From shown frames to poses.
 
-use super::contact::{Contact, Sole, contacts};
+use super::contact::{FootContact, SolePoints, contacts};
 use super::foot_lock::FootLock;
-use super::leg::{Leg, legs};
-use super::pose::Pose;
-use super::placed_frame::Shown;
+use super::leg::{LegJoints, legs};
+use super::pose::CharacterPose;
+use super::placed_frame::PlacedFrame;
 use super::spring::Spring;
 use super::stitch::{Stitch, Stitching};
 use super::two_bone_ik;
@@ -21,9 +21,9 @@ const RISE: f32 = 0.4;
 /// What all players of one database share.
 #[derive(Debug)]
 pub struct Feet {
-    pub legs: [Leg; 2],
+    pub legs: [LegJoints; 2],
     /// Of every frame, left foot first.
-    pub contacts: Vec<[Contact; 2]>,
+    pub contacts: Vec<[FootContact; 2]>,
 }
 
 impl Feet {
@@ -34,9 +34,9 @@ impl Feet {
     }
 
     /// Both soles of a pose, left first.
-    pub fn soles(&self, database: &Database, pose: &Pose) -> [Sole; 2] {
+    pub fn soles(&self, database: &Database, pose: &CharacterPose) -> [SolePoints; 2] {
         let (positions, rotations) = pose.world(&database.skeleton);
-        [0, 1].map(|side| Sole::of(&self.legs[side], &positions, &rotations))
+        [0, 1].map(|side| SolePoints::of(&self.legs[side], &positions, &rotations))
     }
 }
 
@@ -64,7 +64,7 @@ pub struct Player {
     database: Arc<Database>,
     feet: Arc<Feet>,
     style: Style,
-    shown: Shown,
+    shown: PlacedFrame,
     stitch: Stitch,
     locks: [FootLock; 2],
     /// By how much the hips are lower than the motion has them, m.
@@ -73,7 +73,7 @@ pub struct Player {
 
 impl Player {
     /// A character that begins after `shown`.
-    pub fn new(database: Arc<Database>, feet: Arc<Feet>, style: Style, shown: Shown) -> Self {
+    pub fn new(database: Arc<Database>, feet: Arc<Feet>, style: Style, shown: PlacedFrame) -> Self {
         let stitch = Stitch::new(style.stitching, database.skeleton.joints());
         Player {
             database,
@@ -87,7 +87,7 @@ impl Player {
     }
 
     /// The pose of the next frame: of the same clip, or of wherever a match has jumped to.
-    pub fn next(&mut self, shown: Shown) -> Pose {
+    pub fn next(&mut self, shown: PlacedFrame) -> CharacterPose {
         self.stitch.pass();
         if shown.frame != self.shown.frame + 1 {
             self.stitch.turn(&self.database, self.shown, shown);
@@ -104,19 +104,19 @@ impl Player {
 
     /// Holds the standing feet, and keeps both above the ground; where a leg is too short for that, the
     /// hips come down.
-    fn lock(&mut self, pose: &mut Pose, recorded: &[Sole; 2]) {
+    fn lock(&mut self, pose: &mut CharacterPose, recorded: &[SolePoints; 2]) {
         let skeleton = &self.database.skeleton;
         let (positions, rotations) = pose.world(skeleton);
         let mut targets = [Vec3::ZERO; 2];
         let mut lack = 0.0_f32;
         for (side, leg) in self.feet.legs.iter().enumerate() {
-            let sole = Sole::of(leg, &positions, &rotations);
+            let sole = SolePoints::of(leg, &positions, &rotations);
             let contact = self.feet.contacts[self.shown.frame][side];
             let held = self.locks[side].next(&sole, &recorded[side], contact);
             let sunk = -held.y - sole.heel.y.min(sole.toe.y);
             let foot = positions[leg.foot];
             targets[side] = foot + held + Vec3::Y * sunk.max(0.0);
-            if contact != Contact::Air {
+            if contact != FootContact::Air {
                 let length = skeleton.reach(leg.hip, leg.foot);
                 let lacks = two_bone_ik::lack(positions[leg.hip], foot, targets[side], length);
                 lack = lack.max(lacks.unwrap_or(0.0).min(LOWEST));

@@ -1,8 +1,8 @@
 //! How good motion looks, in numbers.
 
-use super::contact::{Contact, Sole};
+use super::contact::{FootContact, SolePoints};
 use super::player::{Feet, Player, Style};
-use super::placed_frame::Shown;
+use super::placed_frame::PlacedFrame;
 use crate::motion::RATE;
 use crate::motion::database::Database;
 use glam::Vec3;
@@ -33,7 +33,7 @@ pub struct Quality {
 /// Quality under each style, and of the recordings themselves.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Shown frames, and how many of them follow a jump.
+    /// PlacedFrame frames, and how many of them follow a jump.
     pub frames: usize,
     pub jumps: usize,
     pub recorded: Quality,
@@ -45,7 +45,7 @@ pub struct Comparison {
 
 /// Judges walks of one database: chains of shown frames, each beginning with the frame before the
 /// first that counts.
-pub fn compare(database: &Arc<Database>, walks: &[Vec<Shown>]) -> Comparison {
+pub fn compare(database: &Arc<Database>, walks: &[Vec<PlacedFrame>]) -> Comparison {
     use super::stitch::Stitching::{Inertialization, Simple};
     let feet = Arc::new(Feet::of(database));
     let style = |stitching, foot_locking| Style {
@@ -74,13 +74,13 @@ pub fn compare(database: &Arc<Database>, walks: &[Vec<Shown>]) -> Comparison {
 /// A shown frame, as it is judged.
 struct Frame {
     joints: Vec<Vec3>,
-    soles: [Sole; 2],
-    contacts: [Contact; 2],
+    soles: [SolePoints; 2],
+    contacts: [FootContact; 2],
     /// It does not follow the previous one in the recording.
     jumped: bool,
 }
 
-fn film(database: &Arc<Database>, feet: &Arc<Feet>, style: Style, walk: &[Shown]) -> Vec<Frame> {
+fn film(database: &Arc<Database>, feet: &Arc<Feet>, style: Style, walk: &[PlacedFrame]) -> Vec<Frame> {
     let mut player = Player::new(database.clone(), feet.clone(), style, walk[0]);
     walk.windows(2)
         .map(|pair| {
@@ -92,7 +92,7 @@ fn film(database: &Arc<Database>, feet: &Arc<Feet>, style: Style, walk: &[Shown]
                 let heights = [soles[side], recorded[side]].map(|sole| sole.point(contact));
                 match heights {
                     [Some(shown), Some(recorded)] if shown.y <= recorded.y + AIR => contact,
-                    _ => Contact::Air,
+                    _ => FootContact::Air,
                 }
             });
             Frame {

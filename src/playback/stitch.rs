@@ -1,8 +1,8 @@
 //! Stitching: what keeps a jump from one frame to another from being seen.
 
-use super::inertialize::Fade;
-use super::pose::Pose;
-use super::placed_frame::Shown;
+use super::inertialize::InertializedOffset;
+use super::pose::CharacterPose;
+use super::placed_frame::PlacedFrame;
 use crate::motion::database::Database;
 use glam::{Quat, Vec3};
 
@@ -27,8 +27,8 @@ pub enum Stitching {
 #[derive(Clone, Debug)]
 pub struct Stitch {
     kind: Stitching,
-    root: Fade,
-    joints: Vec<Fade>,
+    root: InertializedOffset,
+    joints: Vec<InertializedOffset>,
     /// Frames since it began.
     age: f32,
 }
@@ -37,8 +37,8 @@ impl Stitch {
     pub fn new(kind: Stitching, joints: usize) -> Self {
         Stitch {
             kind,
-            root: Fade::default(),
-            joints: vec![Fade::default(); joints],
+            root: InertializedOffset::default(),
+            joints: vec![InertializedOffset::default(); joints],
             age: 0.0,
         }
     }
@@ -49,7 +49,7 @@ impl Stitch {
     }
 
     /// The motion of `from`, just shown, goes over into that of `to`, next to be shown.
-    pub fn turn(&mut self, database: &Database, from: Shown, to: Shown) {
+    pub fn turn(&mut self, database: &Database, from: PlacedFrame, to: PlacedFrame) {
         if self.kind == Stitching::None {
             return;
         }
@@ -59,13 +59,13 @@ impl Stitch {
             self.add(&mut old, self.age + ahead as f32 - 1.0);
             (old, to.on(database, ahead - 1).pose(database))
         });
-        let fade = |difference: &dyn Fn(&Pose, &Pose) -> Vec3| {
+        let fade = |difference: &dyn Fn(&CharacterPose, &CharacterPose) -> Vec3| {
             let [before, now, after] = [0, 1, 2].map(|at| difference(&pairs[at].0, &pairs[at].1));
             match self.kind {
-                Stitching::Inertialization => Fade::through(before, now, after),
-                _ => Fade {
+                Stitching::Inertialization => InertializedOffset::through(before, now, after),
+                _ => InertializedOffset {
                     value: now,
-                    ..Fade::default()
+                    ..InertializedOffset::default()
                 },
             }
         };
@@ -79,13 +79,13 @@ impl Stitch {
     }
 
     /// Adds what is left of the difference.
-    pub fn apply(&self, pose: &mut Pose) {
+    pub fn apply(&self, pose: &mut CharacterPose) {
         if self.kind != Stitching::None {
             self.add(pose, self.age);
         }
     }
 
-    fn add(&self, pose: &mut Pose, age: f32) {
+    fn add(&self, pose: &mut CharacterPose, age: f32) {
         pose.root += self.root.at(age, FRAMES);
         for (rotation, fade) in pose.rotations.iter_mut().zip(&self.joints) {
             *rotation = (Quat::from_scaled_axis(fade.at(age, FRAMES)) * *rotation).normalize();

@@ -1,7 +1,7 @@
 //! Analytic two-joint inverse kinematics: hip and knee turned so that the foot comes to a point.
 
-use super::leg::Leg;
-use super::pose::Pose;
+use super::leg::LegJoints;
+use super::pose::CharacterPose;
 use crate::motion::skeleton::Skeleton;
 use glam::{Quat, Vec3};
 
@@ -13,7 +13,7 @@ const STRAIGHT: f32 = 0.2;
 
 /// Brings the ankle to `target` (world, m), or as near as the leg reaches, keeping the foot's rotation
 /// in the world and the direction of the knee.
-pub fn reach(skeleton: &Skeleton, pose: &mut Pose, leg: &Leg, target: Vec3) {
+pub fn reach(skeleton: &Skeleton, pose: &mut CharacterPose, leg: &LegJoints, target: Vec3) {
     if leg.knee == leg.hip {
         return;
     }

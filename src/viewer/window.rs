@@ -5,7 +5,7 @@ use super::watch::Crowded;
 use crate::gpu::Gpu;
 use crate::motion::database::Database;
 use crate::train::trainer::Watch;
-use crate::view::playthrough::Stage;
+use crate::view::playthrough::PlaythroughContext;
 use crate::env::locomotion::Task;
 use anyhow::{Context, Result, anyhow};
 use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
@@ -65,8 +65,8 @@ pub fn shared(gpu: &Gpu) -> WgpuSetup {
 ///
 /// # Errors
 /// There is no display, a policy cannot be loaded, or the GPU was lost.
-pub fn play(gpu: &Gpu, title: &str, stage: Stage, choices: Vec<Choice>) -> Result<()> {
-    let viewer = |window: &RenderState| Viewer::new(gpu, window, stage, choices);
+pub fn play(gpu: &Gpu, title: &str, context: PlaythroughContext, choices: Vec<Choice>) -> Result<()> {
+    let viewer = |window: &RenderState| Viewer::new(gpu, window, context, choices);
     let over = Arc::new(AtomicBool::new(false));
     open(gpu, title, over, |window| Ok(Box::new(viewer(window)?)))
 }

@@ -1,4 +1,4 @@
-//! Oracle: `search_exact::twin`, which looks at every row.
+//! Oracle: `search_exact::twin`, which compares every row.
 //! Bar: equal indices. Features are small integers, so that every form computes all scores and
 //! distances without rounding and ties abound; real features follow in `search`.
 
@@ -80,14 +80,14 @@ impl Case {
 
     fn checked(&self) -> Vec<u32> {
         let groups = groups(&shader::SEARCH_EXACT, self.queries.len());
-        self.params.passes().fold(self.matched(), |matched, pass| {
+        self.params.block_runs().fold(self.matched(), |matched, run| {
             let buffers: [&[u8]; 4] = [
                 cast_slice(&self.rows),
                 cast_slice(&self.queries),
                 cast_slice(&self.score),
                 cast_slice(&matched),
             ];
-            checked::run(&shader::SEARCH_EXACT, groups, &buffers, &pass).of(3)
+            checked::run(&shader::SEARCH_EXACT, groups, &buffers, &run).of(3)
         })
     }
 
