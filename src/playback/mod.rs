@@ -20,4 +20,4 @@ pub mod two_bone_ik;
 
 pub use player::Player;
 pub use pose::CharacterPose;
-pub use shown::PlacedFrame;
+pub use placed_frame::PlacedFrame;

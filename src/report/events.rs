@@ -79,8 +79,8 @@ impl EventWriter {
     }
 }
 
-fn failure(name: &str, error: &io::ReportError) -> io::ReportError {
-    io::ReportError::new(error.kind(), format!("event file {name}: {error}"))
+fn failure(name: &str, error: &io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("event file {name}: {error}"))
 }
 
 /// TensorFlow's guard against checksums of data that contains checksums.

@@ -23,12 +23,12 @@ pub mod table;
 pub mod trajectories;
 
 /// Why a picture could not be made.
-#[derive(Debug, thiserror::ReportError)]
+#[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// The drawing itself failed, before any file was touched.
     #[error("cannot draw the picture: {0}")]
     Draw(String),
     /// The finished picture could not be written; the message names the file.
     #[error(transparent)]
-    Write(#[from] std::io::ReportError),
+    Write(#[from] std::io::Error),
 }

@@ -17,7 +17,7 @@ pub fn save(path: &Path, width: u32, height: u32, rgb: &[u8]) -> io::Result<()> 
     encode(width, height, rgb)
         .and_then(|bytes| replace(path, &bytes))
         .map_err(|error| {
-            io::ReportError::new(
+            io::Error::new(
                 error.kind(),
                 format!("cannot write the picture {}: {error}", path.display()),
             )

@@ -19,8 +19,8 @@ const HEIGHT: f32 = 0.35;
 pub fn scene(playthrough: &Playthrough, context: &PlaythroughContext) -> Scene {
     let mut scene = untargeted(playthrough, context);
     let radius = match context.task {
-        Task::Plane(plane) => plane.success_radius,
-        Task::Obstacles(obstacles) => obstacles.success_radius,
+        LocomotionTask::Plane(plane) => plane.success_radius,
+        LocomotionTask::Obstacles(obstacles) => obstacles.success_radius,
     };
     target(&mut scene, playthrough.target(), radius);
     obstacles(&mut scene, playthrough);

@@ -78,7 +78,7 @@ impl Viewer {
     ) -> Result<Self> {
         let source = match choices.last() {
             Some(choice) => Source::Policy((choice.load)()?),
-            None => Source::Steered(Steered::new(context.database.clone())),
+            None => Source::Steered(Steered::new(context.database().clone())),
         };
         let mut camera = Camera::default();
         if context.task.obstacles() > 0 {
@@ -232,7 +232,7 @@ impl Viewer {
     /// Frames there are to go to.
     fn frames(&self) -> usize {
         match self.source {
-            Source::Clip(clip) => self.context.database.clips[clip].frames,
+            Source::Clip(clip) => self.context.database().clips[clip].frames,
             _ => self.timeline.len(),
         }
     }
@@ -348,7 +348,7 @@ impl Viewer {
     fn choose_motion(&mut self, ui: &mut Ui) {
         let steered = matches!(self.source, Source::Steered(_));
         if ui.selectable_label(steered, "Steer").clicked() && !steered {
-            self.source = Source::Steered(Steered::new(self.context.database.clone()));
+            self.source = Source::Steered(Steered::new(self.context.database().clone()));
             self.playing = true;
         }
         ui.small("Arrow keys or WASD walk, with shift run.");
@@ -362,14 +362,14 @@ impl Viewer {
             .id_salt("clips")
             .max_height(260.0);
         list.show(ui, |ui| {
-            for index in 0..self.context.database.clips.len() {
+            for index in 0..self.context.database().clips.len() {
                 self.clip_entry(ui, index, chosen == Some(index));
             }
         });
     }
 
     fn clip_entry(&mut self, ui: &mut Ui, index: usize, chosen: bool) {
-        let clip = &self.context.database.clips[index];
+        let clip = &self.context.database().clips[index];
         let seconds = clip.frames as f32 / RATE;
         let label = format!("{} ({seconds:.0} s)", clip.name);
         let response = ui.selectable_label(chosen, label);
@@ -400,7 +400,7 @@ impl Viewer {
 
     /// A frame, by its clip and its number there.
     fn name(&self, frame: usize) -> String {
-        let clip = self.context.database.clip(frame);
+        let clip = self.context.database().clip(frame);
         format!("{} {}", clip.name, frame - clip.first)
     }
 
@@ -409,9 +409,9 @@ impl Viewer {
         if now.step.is_none() {
             return;
         }
-        let query = now.world.queries[0];
+        let query = now.env.queries[0];
         if self.found_for != Some(query) {
-            self.found = nearest(&self.context.database, &query, LISTED);
+            self.found = nearest(self.context.database(), &query, LISTED);
             self.found_for = Some(query);
         }
         egui::Grid::new("found").striped(true).show(ui, |ui| {
@@ -433,8 +433,8 @@ impl Viewer {
     }
 
     fn clip_shown(&self, clip: usize) -> PlacedFrame {
-        let frame = self.context.database.clips[clip].first + self.clip_frame;
-        let [x, z, hx, hz] = self.context.database.path[frame];
+        let frame = self.context.database().clips[clip].first + self.clip_frame;
+        let [x, z, hx, hz] = self.context.database().path[frame];
         PlacedFrame {
             frame,
             at: [x, z],
@@ -449,11 +449,11 @@ impl Viewer {
             Source::Steered(_) => debug_draw::untargeted(now, context),
             Source::Clip(clip) => {
                 let (mut scene, shown) = (Scene::default(), self.clip_shown(clip));
-                let skeleton = &context.database.skeleton;
+                let skeleton = &context.database().skeleton;
                 context
-                    .body
-                    .draw(&mut scene, skeleton, &shown.pose(&context.database));
-                let path = shown.path(&context.database);
+                    .rig
+                    .draw(&mut scene, skeleton, &shown.pose(context.database()));
+                let path = shown.path(context.database());
                 trajectory(&mut scene, shown.at, &path, MATCHED);
                 scene
             }

@@ -1,7 +1,8 @@
 //! The part of the window that shows the scene.
 
 use crate::gpu::Gpu;
-use crate::view::{Camera, RenderTarget, Crowd, Renderer, Scene};
+use crate::view::painter::Drawable;
+use crate::view::{Camera, RenderTarget, Renderer, Scene};
 use eframe::egui::{self, Sense, TextureId, Ui, Vec2};
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu::FilterMode;
@@ -59,14 +60,14 @@ impl Screen {
         &mut self,
         ui: &mut Ui,
         scene: &Scene,
-        crowd: Option<&Crowd>,
+        beside: Option<&dyn Drawable>,
         camera: &mut Camera,
         grabbed: bool,
     ) -> Option<PointerAction> {
         let points = ui.available_size().max(Vec2::splat(16.0));
         let pixels = points * ui.ctx().pixels_per_point() * self.scale;
         self.fit([pixels.x, pixels.y].map(|side| (side.round() as u32).clamp(16, 8192)));
-        self.renderer.draw(scene, crowd, camera, &self.target);
+        self.renderer.draw(scene, beside, camera, &self.target);
         let image =
             egui::Image::from_texture((self.texture, points)).sense(Sense::click_and_drag());
         let response = ui.add(image);

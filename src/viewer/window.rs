@@ -6,7 +6,7 @@ use crate::gpu::Gpu;
 use crate::motion::database::Database;
 use crate::train::trainer::Watch;
 use crate::view::playthrough::PlaythroughContext;
-use crate::env::locomotion::Task;
+use crate::env::locomotion::LocomotionTask;
 use anyhow::{Context, Result, anyhow};
 use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use eframe::{NativeOptions, egui};
@@ -78,7 +78,7 @@ pub fn play(gpu: &Gpu, title: &str, context: PlaythroughContext, choices: Vec<Ch
 pub fn watch(
     gpu: &Gpu,
     database: Arc<Database>,
-    task: Task,
+    task: LocomotionTask,
     envs: usize,
     watch: Arc<Watch>,
     over: Arc<AtomicBool>,

@@ -1,6 +1,6 @@
 //! The second half of a BVH file: how many frames, how fast, and their numbers.
 
-use crate::motion::error::Result;
+use crate::motion::error::MotionResult;
 use super::hierarchy::{number, problem, shorten};
 use std::path::Path;
 
