@@ -41,7 +41,7 @@ impl Play {
         let checkpoint = Checkpoint::load_for(&path, &config.task, database.fingerprint)?;
         let task = checkpoint.header.task;
         let mut paths = folder.checkpoint_files()?;
-        // The one requested for is shown first: it comes last.
+        // The requested one is shown first: it comes last.
         paths.retain(|other| other.file_name() != path.file_name());
         paths.push(path);
         let choices = paths.into_iter().map(|path| {

@@ -1,4 +1,4 @@
-//! When a foot stands, and on what: from the speed and height of heel and toe.
+//! Foot contacts of the recordings, from the speed and height of heel and toe.
 
 use super::leg::{LegJoints, world};
 use crate::motion::RATE;
@@ -30,6 +30,7 @@ pub struct SolePoints {
 }
 
 impl SolePoints {
+    /// The sole of a leg in a pose.
     pub fn of(leg: &LegJoints, positions: &[Vec3], rotations: &[Quat]) -> SolePoints {
         SolePoints {
             heel: positions[leg.foot] + rotations[leg.foot] * leg.heel,
@@ -78,7 +79,7 @@ pub fn contacts(database: &Database, legs: &[LegJoints; 2]) -> Vec<[FootContact;
     contacts
 }
 
-/// Where a point of a sole stands.
+/// Whether a point of a sole stands, frame by frame.
 fn standing(points: &[Vec3]) -> Vec<bool> {
     let mut heights: Vec<f32> = points.iter().map(|point| point.y).collect();
     heights.sort_by(f32::total_cmp);

@@ -1,10 +1,11 @@
-//! A leg: its joints, and what the recordings tell of its knee and sole.
+//! A leg: its joints, and the axis of its knee and the point of its heel as the recordings show them.
 
 use crate::motion::database::Database;
 use crate::motion::roles::Roles;
 use crate::motion::skeleton::Skeleton;
 use glam::{Quat, Vec3};
 
+/// Joints and geometry of a leg.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LegJoints {
     pub hip: usize,

@@ -1,4 +1,4 @@
-//! From shown frames to poses.
+//! Poses out of a chain of placed frames.
 
 use super::contact::{FootContact, SolePoints, contacts};
 use super::foot_lock::FootLock;
@@ -22,11 +22,12 @@ const RISE: f32 = 0.4;
 #[derive(Debug)]
 pub struct Feet {
     pub legs: [LegJoints; 2],
-    /// Of every frame, left foot first.
+    /// Contacts of every frame, left foot first.
     pub contacts: Vec<[FootContact; 2]>,
 }
 
 impl Feet {
+    /// Legs and contacts of all frames of a database.
     pub fn of(database: &Database) -> Feet {
         let legs = legs(database);
         let contacts = contacts(database, &legs);
@@ -40,7 +41,7 @@ impl Feet {
     }
 }
 
-/// How the motion is made presentable.
+/// How jumps and sliding feet are hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Style {
     pub stitching: Stitching,
@@ -48,12 +49,14 @@ pub struct Style {
 }
 
 impl Style {
+    /// The recorded poses as they are.
     pub const RAW: Style = Style {
         stitching: Stitching::None,
         foot_locking: false,
     };
+    /// Inertialization and foot locking.
     pub const BEST: Style = Style {
-        stitching: Stitching::Inertialization,
+        stitching: Stitching::Inertialize,
         foot_locking: true,
     };
 }
@@ -67,7 +70,7 @@ pub struct Player {
     shown: PlacedFrame,
     stitch: Stitch,
     locks: [FootLock; 2],
-    /// By how much the hips are lower than the motion has them, m.
+    /// Distance by which the hips are lowered, m.
     hips: Spring,
 }
 
@@ -88,9 +91,9 @@ impl Player {
 
     /// The pose of the next frame: of the same clip, or of wherever a match has jumped to.
     pub fn next(&mut self, shown: PlacedFrame) -> CharacterPose {
-        self.stitch.pass();
+        self.stitch.advance();
         if shown.frame != self.shown.frame + 1 {
-            self.stitch.turn(&self.database, self.shown, shown);
+            self.stitch.begin(&self.database, self.shown, shown);
         }
         self.shown = shown;
         let mut pose = shown.pose(&self.database);
@@ -108,7 +111,7 @@ impl Player {
         let skeleton = &self.database.skeleton;
         let (positions, rotations) = pose.world(skeleton);
         let mut targets = [Vec3::ZERO; 2];
-        let mut lack = 0.0_f32;
+        let mut shortfall = 0.0_f32;
         for (side, leg) in self.feet.legs.iter().enumerate() {
             let sole = SolePoints::of(leg, &positions, &rotations);
             let contact = self.feet.contacts[self.shown.frame][side];
@@ -118,14 +121,14 @@ impl Player {
             targets[side] = foot + held + Vec3::Y * sunk.max(0.0);
             if contact != FootContact::Air {
                 let length = skeleton.reach(leg.hip, leg.foot);
-                let lacks = two_bone_ik::lack(positions[leg.hip], foot, targets[side], length);
-                lack = lack.max(lacks.unwrap_or(0.0).min(LOWEST));
+                let leg_shortfall = two_bone_ik::shortfall(positions[leg.hip], foot, targets[side], length);
+                shortfall = shortfall.max(leg_shortfall.unwrap_or(0.0).min(LOWEST));
             }
         }
-        let rate = if lack > self.hips.place { DOWN } else { RISE };
-        pose.root.y -= self.hips.follow(lack, rate);
+        let rate = if shortfall > self.hips.position { DOWN } else { RISE };
+        pose.root.y -= self.hips.follow(shortfall, rate);
         for (leg, target) in self.feet.legs.iter().zip(targets) {
-            two_bone_ik::reach(skeleton, pose, leg, target);
+            two_bone_ik::solve(skeleton, pose, leg, target);
         }
     }
 }

@@ -50,12 +50,12 @@ impl PlaythroughContext {
     }
 }
 
-/// What a step requested for and what it got.
+/// The request and the result of a step.
 #[derive(Clone, Debug)]
 pub struct Step {
     /// The character before it.
     pub from: PlacedFrame,
-    /// The trajectory requested for, in the world: x, z (m), heading x, heading z.
+    /// The requested trajectory, in the world: x, z (m), heading x, heading z.
     pub requested: [[f32; 4]; TRAJECTORY_OFFSETS.len()],
     /// The database frame found.
     pub matched: usize,

@@ -393,7 +393,7 @@ impl Viewer {
         }
         ui.label(format!("plays {}", self.name(now.shown.frame)));
         ui.horizontal(|ui| {
-            ui.colored_label(colour(debug_draw::REQUESTED), "requested for");
+            ui.colored_label(colour(debug_draw::REQUESTED), "requested");
             ui.colored_label(colour(MATCHED), "matched");
         });
     }

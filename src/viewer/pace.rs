@@ -25,7 +25,7 @@ impl Pace {
         }
     }
 
-    /// How long to wait for the next picture, right after one has been requested for.
+    /// How long to wait for the next picture, right after one has been requested.
     pub fn next(&self, queue: &wgpu::Queue) -> Duration {
         if !self.software {
             return OFTEN;
