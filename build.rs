@@ -201,7 +201,7 @@ fn describe(
             let field = member.name.as_deref().ok_or("unnamed parameter")?;
             let _ = writeln!(
                 layout,
-                "pub const fn {field}() -> super::super::Field {{ super::super::Field {{ offset: {}, kind: super::super::Kind::{} }} }}",
+                "pub const fn {field}() -> super::super::Field {{ super::super::Field {{ offset: {}, kind: super::super::ParamKind::{} }} }}",
                 member.offset,
                 kind.to_uppercase()
             );

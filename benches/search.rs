@@ -7,8 +7,8 @@
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use footwork::kernels::rng::{gaussian, index_below, random4};
 use footwork::kernels::search::search_exact;
-use footwork::motion::database::{Database, ROW_STRIDE};
-use footwork::motion::features::{FEATURE_DIM, POSE_DIM};
+use footwork::motion::database::Database;
+use footwork::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE};
 use footwork::motion::normalise::Weights;
 use footwork::matching::{Index, MEMORY};
 use footwork::train::data;
@@ -76,7 +76,7 @@ fn search(criterion: &mut Criterion) {
             count: 16,
             candidates: rows.len() as u32,
             block: 64,
-            longest: 0.0,
+            max_norm: 0.0,
         };
         let mut matched = [0; 16];
         b.iter(|| search_exact::twin(&rows, black_box(&queries), &[], &mut matched, &params));

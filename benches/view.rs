@@ -7,22 +7,22 @@ use footwork::motion::normalise::Weights;
 use footwork::motion::synthetic;
 use footwork::playback::player::Style;
 use footwork::view::debug_draw::scene;
-use footwork::view::playthrough::{Rollout, Stage};
-use footwork::view::{Camera, Canvas, Crowd, Renderer, Scene};
+use footwork::view::playthrough::{Playthrough, PlaythroughContext};
+use footwork::view::{Camera, RenderTarget, Crowd, Renderer, Scene};
 use footwork::env::locomotion::{self, LEVELS, Obstacles, Plane, Setup, Task};
 use std::hint::black_box;
 use std::sync::Arc;
 
 struct Studio {
     renderer: Renderer,
-    canvas: Canvas,
+    target: RenderTarget,
     camera: Camera,
 }
 
 impl Studio {
     fn draw(&mut self, scene: &Scene, crowd: Option<&Crowd>) {
         self.renderer
-            .draw(black_box(scene), crowd, &self.camera, &self.canvas);
+            .draw(black_box(scene), crowd, &self.camera, &self.target);
         let wait = wgpu::PollType::wait_indefinitely();
         self.renderer.device.poll(wait).expect("a picture");
     }
@@ -35,7 +35,7 @@ fn pictures(criterion: &mut Criterion) {
     let database = Arc::new(database);
     let renderer = Renderer::new(&gpu);
     let mut studio = Studio {
-        canvas: Canvas::new(&renderer.device, [1280, 720]),
+        target: RenderTarget::new(&renderer.device, [1280, 720]),
         camera: Camera::default(),
         renderer,
     };
@@ -48,8 +48,8 @@ fn pictures(criterion: &mut Criterion) {
         ),
     ];
     for (name, task) in tasks {
-        let stage = Stage::new(database.clone(), task, Style::BEST);
-        let scene = scene(&Rollout::new(&stage, 0), &stage);
+        let context = PlaythroughContext::new(database.clone(), task, Style::BEST);
+        let scene = scene(&Playthrough::new(&context, 0), &context);
         group.bench_function(name, |bencher| bencher.iter(|| studio.draw(&scene, None)));
     }
     for envs in [256, 1024, 4096] {

@@ -7,8 +7,8 @@ use footwork::playback::leg::legs;
 use footwork::playback::player::{Feet, Style};
 use footwork::playback::quality::compare;
 use footwork::playback::stitch::Stitching;
-use footwork::playback::two_bone_ik::reach;
-use footwork::playback::{Player, Pose, Shown};
+use footwork::playback::two_bone_ik::solve;
+use footwork::playback::{Player, CharacterPose, PlacedFrame};
 use footwork::train::controller::Scripted;
 use footwork::train::rendered_frames::shown;
 use footwork::env::locomotion::{Plane, Task};
@@ -23,12 +23,12 @@ static DATABASE: LazyLock<Arc<Database>> = LazyLock::new(|| {
 });
 static FEET: LazyLock<Arc<Feet>> = LazyLock::new(|| Arc::new(Feet::of(&DATABASE)));
 
-fn player(style: Style, from: Shown) -> Player {
+fn player(style: Style, from: PlacedFrame) -> Player {
     Player::new(DATABASE.clone(), FEET.clone(), style, from)
 }
 
-fn at(frame: usize) -> Shown {
-    Shown {
+fn at(frame: usize) -> PlacedFrame {
+    PlacedFrame {
         frame,
         at: [3.0, -2.0],
         heading: [0.6, -0.8],
@@ -36,7 +36,7 @@ fn at(frame: usize) -> Shown {
 }
 
 /// Largest distance between the joints of two poses, m.
-fn apart(a: &Pose, b: &Pose) -> f32 {
+fn apart(a: &CharacterPose, b: &CharacterPose) -> f32 {
     let [(a, _), (b, _)] = [a, b].map(|pose| pose.world(&DATABASE.skeleton));
     let distances = a.iter().zip(&b).map(|(a, b)| a.distance(*b));
     distances.fold(0.0, f32::max)
@@ -51,7 +51,7 @@ fn walking_on_is_the_recording_moved_as_a_whole() {
         for ahead in [1, 6, 25] {
             let later = at(frame).on(&DATABASE, ahead as isize).pose(&DATABASE);
             let moved = DATABASE.hips[frame + ahead] - DATABASE.hips[frame];
-            let recorded = Pose {
+            let recorded = CharacterPose {
                 root: begun.root + turn * moved,
                 rotations: (0..joints)
                     .map(|joint| {
@@ -69,8 +69,8 @@ fn walking_on_is_the_recording_moved_as_a_whole() {
 fn a_recording_without_jumps_is_shown_as_it_is() {
     for stitching in [
         Stitching::None,
-        Stitching::Simple,
-        Stitching::Inertialization,
+        Stitching::Linear,
+        Stitching::Inertialize,
     ] {
         let style = Style {
             stitching,
@@ -87,7 +87,7 @@ fn a_recording_without_jumps_is_shown_as_it_is() {
 #[test]
 fn a_seam_begins_with_the_old_motion_and_ends_with_the_new() {
     let (old, new) = (at(200), at(1500));
-    for stitching in [Stitching::Simple, Stitching::Inertialization] {
+    for stitching in [Stitching::Linear, Stitching::Inertialize] {
         let style = Style {
             stitching,
             foot_locking: false,
@@ -110,7 +110,7 @@ fn legs_reach_what_they_can_and_bend_their_knees_forward() {
     let mut random = SmallRng::seed_from_u64(5);
     let skeleton = &DATABASE.skeleton;
     for leg in legs(&DATABASE) {
-        let length = skeleton.reach(leg.hip, leg.foot);
+        let length = skeleton.solve(leg.hip, leg.foot);
         for _ in 0..500 {
             let frame = random.random_range(0..DATABASE.frames());
             let mut pose = at(frame).pose(&DATABASE);
@@ -118,7 +118,7 @@ fn legs_reach_what_they_can_and_bend_their_knees_forward() {
             let shift = Vec3::from_array([0.0; 3].map(|_: f32| random.random_range(-0.3..0.3)));
             let target = before[leg.foot] + shift;
             let hip = before[leg.hip];
-            reach(skeleton, &mut pose, &leg, target);
+            solve(skeleton, &mut pose, &leg, target);
             let (after, turned_after) = pose.world(skeleton);
             let wanted = target.distance(hip);
             if wanted < 0.95 * length && wanted > 0.1 {
@@ -143,7 +143,7 @@ fn reaching_where_the_foot_already_is_changes_nothing() {
             let recorded = at(frame).pose(&DATABASE);
             let mut pose = recorded.clone();
             let (positions, _) = pose.world(&DATABASE.skeleton);
-            reach(&DATABASE.skeleton, &mut pose, &leg, positions[leg.foot]);
+            solve(&DATABASE.skeleton, &mut pose, &leg, positions[leg.foot]);
             assert!(apart(&pose, &recorded) < 1e-3, "frame {frame}");
         }
     }
@@ -154,7 +154,7 @@ fn a_target_nobody_can_reach_leaves_numbers() {
     for leg in legs(&DATABASE) {
         for target in [Vec3::splat(1e6), Vec3::ZERO, at(9).pose(&DATABASE).root] {
             let mut pose = at(9).pose(&DATABASE);
-            reach(&DATABASE.skeleton, &mut pose, &leg, target);
+            solve(&DATABASE.skeleton, &mut pose, &leg, target);
             let finite = |q: &Quat| q.is_finite() && q.is_normalized();
             assert!(pose.rotations.iter().all(finite));
         }

@@ -3,7 +3,7 @@
 // distance, candidates  [LANES][count]
 // matched               [count]
 
-#import index
+#import search_index
 
 struct Params {
     count: u32,
@@ -21,10 +21,10 @@ fn search_argmin(@builtin(global_invocation_id) id: vec3u) {
     var best = distance[at];
     var candidate = candidates[at];
     for (var lane = 1u; lane < LANES; lane++) {
-        let near = distance[lane * params.count + at];
+        let squared = distance[lane * params.count + at];
         let other = candidates[lane * params.count + at];
-        if (near < best || (near == best && other < candidate)) {
-            best = near;
+        if (squared < best || (squared == best && other < candidate)) {
+            best = squared;
             candidate = other;
         }
     }

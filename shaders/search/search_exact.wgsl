@@ -1,9 +1,9 @@
-// The nearest candidate of every query, exactly: of the blocks that search_wide or search_tile
+// The nearest candidate of every query, exactly: of the blocks that search_score_lanes or search_score_tiled
 // scored, those that rounding leaves in question are compared row by row, and of equal distances
 // the lowest index wins. One invocation a query.
 //
 // A score is a sum of 28 products, wrong by at most g (|q| R + R^2 / 2) with g = 28 u / (1 - 28 u),
-// u = 2^-24 and R the longest row (Higham, Accuracy and Stability, section 3.1); its stored half
+// u = 2^-24 and R the norm of the longest row (Higham, Accuracy and Stability, section 3.1); its stored half
 // square adds g R^2 / 2, the distance compared in the end g (|q| + R)^2 / 2. A block whose score is
 // more than twice their sum below the best holds no nearest row; 128 u (|q| + R)^2 is more.
 //
@@ -25,8 +25,8 @@ struct Params {
     // The blocks compared in this launch: first .. last - 1.
     first: u32,
     last: u32,
-    // Length of the longest row.
-    longest: f32,
+    // Norm of the longest row.
+    max_norm: f32,
 }
 
 @group(0) @binding(0) var<storage, read> rows: array<vec4f>;
@@ -62,14 +62,14 @@ fn search_exact(@builtin(global_invocation_id) id: vec3u) {
         vec4f(queries[i + 6u].xyz, 0.0),
     );
     let squares = q.a * q.a + q.b * q.b + q.c * q.c + q.d * q.d + q.e * q.e + q.f * q.f + q.g * q.g;
-    let reach = sqrt((squares.x + squares.y) + (squares.z + squares.w)) + params.longest;
+    let norms = sqrt((squares.x + squares.y) + (squares.z + squares.w)) + params.max_norm;
 
     let blocks = (params.candidates + params.block - 1u) / params.block;
     var top = score[at];
     for (var block = 1u; block < blocks; block++) {
         top = max(top, score[block * params.count + at]);
     }
-    let least = top - MARGIN * reach * reach;
+    let least = top - MARGIN * norms * norms;
 
     var best = 3.4e38;
     var found = 0u;
@@ -82,16 +82,16 @@ fn search_exact(@builtin(global_invocation_id) id: vec3u) {
         let end = min((block + 1u) * params.block, params.candidates) - 1u;
         for (var row = block * params.block; row <= end; row += 4u) {
             // Past the end the last row again, which is not nearer than itself.
-            let near = vec4f(
+            let distances = vec4f(
                 squared(row, q),
                 squared(min(row + 1u, end), q),
                 squared(min(row + 2u, end), q),
                 squared(min(row + 3u, end), q),
             );
-            if (near[0] < best) { best = near[0]; found = row + 0u; }
-            if (near[1] < best) { best = near[1]; found = row + 1u; }
-            if (near[2] < best) { best = near[2]; found = row + 2u; }
-            if (near[3] < best) { best = near[3]; found = row + 3u; }
+            if (distances[0] < best) { best = distances[0]; found = row + 0u; }
+            if (distances[1] < best) { best = distances[1]; found = row + 1u; }
+            if (distances[2] < best) { best = distances[2]; found = row + 2u; }
+            if (distances[3] < best) { best = distances[3]; found = row + 3u; }
         }
     }
     matched[at] = found;

@@ -1,51 +1,51 @@
-// The leaves of the index (src/search) that may hold something nearer to a query than what is known,
+// The leaves of the index (src/matching) that may hold something nearer to a query than what is known,
 // or as near: those whose bound is within the limit.
 //
 // Sixteen queries an invocation: lavapipe fetches a box lane by lane even where all lanes want the
 // same one, so each fetch must serve many queries.
 //
-// boxes, codes, shown, asked  as in search_near
-// distance  [LANES][count]   of the best that each lane knows, squared
-// reach     [words][count]   bit i of word w: leaf first + 32 w + i
+// boxes, distance_codes, shown, query_projection  as in search_seed
+// distance   [LANES][count]   squared, of the best that each lane knows
+// leaf_mask  [words][count]   bit i of word w: leaf first + 32 w + i
 
 #import locomotion_layout
-#import index
+#import search_index
 
 struct Params {
     count: u32,
     groups: u32,
-    // The leaves looked at, a multiple of 32, and those of them an invocation looks at.
+    // The leaves tested, a multiple of 32, and how many of them an invocation tests.
     first: u32,
     last: u32,
     run: u32,
-    // Of the database: word of `codes` where those of the groups begin.
+    // Frames of the database: word of `distance_codes` where those of the groups begin.
     frames: u32,
-    // Word of `codes` where those of the leaves begin; 0 if there are none.
+    // Word of `distance_codes` where those of the leaves begin; 0 if there are none.
     leaf_codes: u32,
     // Distance a unit of a byte.
     step: f32,
 }
 
 @group(0) @binding(0) var<storage, read> boxes: array<vec4f>;
-@group(0) @binding(1) var<storage, read> codes: array<u32>;
+@group(0) @binding(1) var<storage, read> distance_codes: array<u32>;
 @group(0) @binding(2) var<storage, read> shown: array<u32>;
-@group(0) @binding(3) var<storage, read> asked: array<f32>;
+@group(0) @binding(3) var<storage, read> query_projection: array<f32>;
 @group(0) @binding(4) var<storage, read> distance: array<f32>;
-@group(0) @binding(5) var<storage, read_write> reach: array<u32>;
+@group(0) @binding(5) var<storage, read_write> leaf_mask: array<u32>;
 @group(0) @binding(6) var<uniform> params: Params;
 
 const QUERIES = 16u; // an invocation
 
-struct Four { t: Turned, limit: vec4f, place: vec4u }
+struct Four { t: Projected, limit: vec4f, block_row: vec4u }
 
 fn load_box(box: u32) -> Box {
-    let i = CORNERS * (PCA_AXES + box);
+    let i = CORNERS * (PCA_BOXES + box);
     return Box(boxes[i], boxes[i + 1u], boxes[i + 2u], boxes[i + 3u], boxes[i + 4u], boxes[i + 5u]);
 }
 
-fn load_asked(number: u32, at: vec4u) -> vec4f {
+fn load_projection(number: u32, at: vec4u) -> vec4f {
     let i = number * params.count + at;
-    return vec4f(asked[i.x], asked[i.y], asked[i.z], asked[i.w]);
+    return vec4f(query_projection[i.x], query_projection[i.y], query_projection[i.z], query_projection[i.w]);
 }
 
 fn limit_at(at: u32) -> f32 {
@@ -53,33 +53,33 @@ fn limit_at(at: u32) -> f32 {
     for (var lane = 1u; lane < LANES; lane++) {
         least = min(least, distance[lane * params.count + at]);
     }
-    return limit_of(least, asked[12u * params.count + at]);
+    return limit_of(least, query_projection[12u * params.count + at]);
 }
 
 // Queries past the end repeat the last one and are not written.
 fn load_four(first: u32) -> Four {
     let at = min(first + vec4u(0u, LANES, 2u * LANES, 3u * LANES), vec4u(params.count - 1u));
-    let t = Turned(
-        load_asked(0u, at), load_asked(1u, at), load_asked(2u, at), load_asked(3u, at),
-        load_asked(4u, at), load_asked(5u, at), load_asked(6u, at), load_asked(7u, at),
-        load_asked(8u, at), load_asked(9u, at), load_asked(10u, at), load_asked(11u, at),
+    let t = Projected(
+        load_projection(0u, at), load_projection(1u, at), load_projection(2u, at), load_projection(3u, at),
+        load_projection(4u, at), load_projection(5u, at), load_projection(6u, at), load_projection(7u, at),
+        load_projection(8u, at), load_projection(9u, at), load_projection(10u, at), load_projection(11u, at),
     );
     let limit = vec4f(limit_at(at.x), limit_at(at.y), limit_at(at.z), limit_at(at.w));
-    let place = vec4u(codes[shown[at.x]], codes[shown[at.y]], codes[shown[at.z]], codes[shown[at.w]]) * params.groups;
-    return Four(t, limit, place);
+    let block_row = vec4u(distance_codes[shown[at.x]], distance_codes[shown[at.y]], distance_codes[shown[at.z]], distance_codes[shown[at.w]]) * params.groups;
+    return Four(t, limit, block_row);
 }
 
 // The codes of four neighbouring leaves; a group's own code holds for each of its leaves.
-fn codes_at(place: u32, leaf: u32) -> u32 {
-    let group = place + leaf / GROUP;
-    let word = select(params.leaf_codes + (place * GROUP + leaf) / 4u, params.frames + group / 4u, params.leaf_codes == 0u);
-    let found = codes[word];
+fn codes_at(block_row: u32, leaf: u32) -> u32 {
+    let group = block_row + leaf / GROUP;
+    let word = select(params.leaf_codes + (block_row * GROUP + leaf) / 4u, params.frames + group / 4u, params.leaf_codes == 0u);
+    let found = distance_codes[word];
     return select(found, (found >> (8u * (group % 4u)) & 0xffu) * 0x01010101u, params.leaf_codes == 0u);
 }
 
 fn four_codes(four: Four, leaf: u32) -> vec4u {
-    let place = four.place;
-    return vec4u(codes_at(place.x, leaf), codes_at(place.y, leaf), codes_at(place.z, leaf), codes_at(place.w, leaf));
+    let row = four.block_row;
+    return vec4u(codes_at(row.x, leaf), codes_at(row.y, leaf), codes_at(row.z, leaf), codes_at(row.w, leaf));
 }
 
 fn bits(box: Box, four: Four, codes: vec4u, bit: u32) -> vec4u {
@@ -92,7 +92,7 @@ fn write(word: u32, at: u32, found: vec4u) {
     for (var i = 0u; i < 4u; i++) {
         let query = at + i * LANES;
         if (query < params.count) {
-            reach[row + query] = found[i];
+            leaf_mask[row + query] = found[i];
         }
     }
 }

@@ -1,4 +1,4 @@
-// Scores every block of the database for every query, as search_wide does.
+// Scores every block of the database for every query, as search_score_lanes does.
 // The form for real GPUs: a workgroup scores 64 queries against 64 rows at a time out of
 // workgroup memory; each of its 16 x 16 invocations keeps 4 x 4 scores in registers.
 //

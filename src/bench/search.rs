@@ -11,8 +11,8 @@ use super::{Item, Record};
 use crate::gpu::{Buffer, Device};
 use crate::kernels::rng::{gaussian, index_below, random4};
 use crate::kernels::search::search_exact;
-use crate::motion::database::{Database, ROW_STRIDE};
-use crate::motion::features::{FEATURE_DIM, POSE_DIM};
+use crate::motion::database::Database;
+use crate::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE};
 use crate::matching::Index;
 use crate::matching::gpu::brute_force::Brute;
 use crate::matching::gpu::indexed::Indexed;
@@ -132,7 +132,7 @@ impl Case {
             count: 1,
             candidates: self.rows.len() as u32,
             block: 64,
-            longest: 0.0,
+            max_norm: 0.0,
         };
         let each = self.queries[..FEW]
             .par_chunks(1)

@@ -5,7 +5,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use footwork::bench::{Plan, Row, STAGES, run};
 use footwork::gpu::Choice;
-use footwork::report::scaling::{self, Curve, Panel};
+use footwork::report::scaling::{self, Curve, ScalingPanel};
 use footwork::report::table::table;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
@@ -158,7 +158,7 @@ fn duration(seconds: f64) -> String {
 }
 
 /// Curves of what has sizes: the search by frames, training by environments.
-fn panels(rows: &[Row]) -> Vec<Panel> {
+fn panels(rows: &[Row]) -> Vec<ScalingPanel> {
     let by_frames = |row: &Row| row.frames;
     let by_envs = |row: &Row| row.envs;
     let panel = |title: &str, x, y, stage, variant, size: &dyn Fn(&Row) -> usize| {
@@ -177,7 +177,7 @@ fn panels(rows: &[Row]) -> Vec<Panel> {
                 }),
             }
         }
-        Panel {
+        ScalingPanel {
             title: title.to_string(),
             x,
             y,

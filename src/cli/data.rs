@@ -3,7 +3,9 @@
 use super::Usage;
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand, ValueEnum};
-use footwork::motion::database::{Database, MIN_FUTURE_FRAMES};
+use footwork::matching::MotionMatcher;
+use footwork::motion::database::Database;
+use footwork::motion::features::MIN_FUTURE_FRAMES;
 use footwork::motion::import::ImportOptions;
 use footwork::motion::normalise::Weights;
 use footwork::motion::{RATE, bvh, synthetic};
@@ -11,6 +13,7 @@ use footwork::report::coverage::{self, Samples};
 use footwork::report::table::table;
 use footwork::train::data;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 #[derive(Subcommand)]
 pub enum Data {
@@ -28,15 +31,15 @@ enum WeightPreset {
     /// All alike
     #[default]
     Paper,
-    /// Feet's places count less, directions more
-    Orangeduck,
+    /// Daniel Holden's: positions of the feet count less, directions more
+    Holden,
 }
 
 impl From<WeightPreset> for Weights {
     fn from(preset: WeightPreset) -> Self {
         match preset {
             WeightPreset::Paper => Weights::PAPER,
-            WeightPreset::Orangeduck => Weights::ORANGEDUCK,
+            WeightPreset::Holden => Weights::HOLDEN,
         }
     }
 }
@@ -83,7 +86,7 @@ pub struct Info {
     path: Option<PathBuf>,
     /// Also draw speed against turning, and the directions of movement
     #[arg(long, value_name = "PNG")]
-    picture: Option<PathBuf>,
+    plot: Option<PathBuf>,
 }
 
 impl Data {
@@ -110,7 +113,7 @@ impl Import {
         for note in notes {
             eprintln!("note: {note}");
         }
-        save(&database, &self.out)
+        save(database, &self.out)
     }
 }
 
@@ -121,7 +124,7 @@ impl Synth {
         }
         let (clips, roles) = synthetic::perform(self.seed, self.minutes);
         save(
-            &Database::build(&clips, roles, self.weights.into())?,
+            Database::build(&clips, roles, self.weights.into())?,
             &self.out,
         )?;
         if let Some(folder) = &self.bvh {
@@ -135,11 +138,13 @@ impl Synth {
     }
 }
 
-fn save(database: &Database, path: &Path) -> Result<()> {
+fn save(database: Database, path: &Path) -> Result<()> {
     database.save(path)?;
-    database.save_index(path).context(
-        "the database was written, the search's index beside it was not, and every training will build it anew",
+    let matcher = MotionMatcher::new(Arc::new(database));
+    matcher.save_index(path).context(
+        "the database was written, the index of the search beside it was not, and every training will build it anew",
     )?;
+    let MotionMatcher { database, index } = matcher;
     println!(
         "{}: {} clips, {:.1} minutes, {} candidates, fingerprint {:08x}; beside it the search's index, {:.1} MB",
         path.display(),
@@ -147,7 +152,7 @@ fn save(database: &Database, path: &Path) -> Result<()> {
         database.minutes(),
         database.candidates.len(),
         database.fingerprint,
-        database.index().bytes() as f64 / 1e6,
+        index.bytes() as f64 / 1e6,
     );
     Ok(())
 }
@@ -169,7 +174,7 @@ impl Info {
         );
         let motion = database.ground_motion();
         print!("{}", coverage_table(&motion));
-        if let Some(picture) = &self.picture {
+        if let Some(plot) = &self.plot {
             let speed: Vec<f32> = motion
                 .iter()
                 .map(|(velocity, _)| velocity[0].hypot(velocity[1]))
@@ -186,8 +191,8 @@ impl Info {
                 turning: &turning,
                 velocity: &velocity,
             };
-            coverage::draw(picture, &samples)?;
-            println!("\ncoverage drawn in {}", picture.display());
+            coverage::draw(plot, &samples)?;
+            println!("\ncoverage drawn in {}", plot.display());
         }
         Ok(())
     }

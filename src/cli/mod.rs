@@ -12,7 +12,7 @@ mod train;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-use footwork::motion::error::Error as MotionError;
+use footwork::motion::error::MotionError;
 use footwork::train::config::ConfigError;
 
 /// Trains character controllers: motion capture in, a policy that moves a full-body character out.

@@ -11,7 +11,7 @@ use footwork::playback::player::Style;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::controller::Trained;
 use footwork::train::data;
-use footwork::view::playthrough::Stage;
+use footwork::view::playthrough::PlaythroughContext;
 use footwork::env::locomotion::{Plane, Task};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -41,7 +41,7 @@ impl Play {
         let checkpoint = Checkpoint::load_for(&path, &config.task, database.fingerprint)?;
         let task = checkpoint.header.task;
         let mut paths = folder.checkpoint_files()?;
-        // The one asked for is shown first: it comes last.
+        // The requested one is shown first: it comes last.
         paths.retain(|other| other.file_name() != path.file_name());
         paths.push(path);
         let choices = paths.into_iter().map(|path| {
@@ -59,8 +59,8 @@ impl Play {
             }
         });
         let title = format!("footwork: {}", folder.path().display());
-        let stage = Stage::new(database.clone(), task, Style::BEST);
-        window::play(&Gpu::drawing()?, &title, stage, choices.collect())
+        let context = PlaythroughContext::new(database.clone(), task, Style::BEST);
+        window::play(&Gpu::drawing()?, &title, context, choices.collect())
     }
 
     fn motion(&self) -> Result<()> {
@@ -73,7 +73,7 @@ impl Play {
             reach: 0.0,
             ..Plane::default()
         });
-        let stage = Stage::new(Arc::new(database), task, Style::BEST);
-        window::play(&Gpu::drawing()?, "footwork", stage, Vec::new())
+        let context = PlaythroughContext::new(Arc::new(database), task, Style::BEST);
+        window::play(&Gpu::drawing()?, "footwork", context, Vec::new())
     }
 }

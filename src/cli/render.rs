@@ -10,14 +10,14 @@ use footwork::playback::stitch::Stitching;
 use footwork::train::controller::Trained;
 use footwork::view::image_files::{self, Output};
 use footwork::view::debug_draw::scene;
-use footwork::view::playthrough::{Rollout, Stage};
-use footwork::view::{Camera, Canvas, Renderer};
+use footwork::view::playthrough::{Playthrough, PlaythroughContext};
+use footwork::view::{Camera, RenderTarget, Renderer};
 use indicatif::ProgressIterator;
 use std::path::PathBuf;
 
 /// Frames of the motion a second.
 const RATE: u32 = 30;
-/// How quickly the camera follows, a share a frame.
+/// Fraction of the way to the character that the camera covers in a frame.
 const FOLLOW: f32 = 0.2;
 
 #[derive(Args)]
@@ -26,7 +26,7 @@ pub struct Render {
     run: PathBuf,
     /// FILE.png for one picture, FILE.gif for an animation, a folder's name for PNG frames
     #[arg(short, long, value_name = "FILE|DIR")]
-    output: PathBuf,
+    out: PathBuf,
     /// Write over what is there
     #[arg(long)]
     force: bool,
@@ -41,14 +41,14 @@ pub struct Render {
         allow_negative_numbers = true
     )]
     episode: usize,
-    /// When to begin, s; a single picture is of this moment
+    /// Time of the first picture, s
     #[arg(
         long,
         default_value_t = 0.8,
         value_name = "SECONDS",
         allow_negative_numbers = true
     )]
-    at: f32,
+    start: f32,
     /// Length of an animation, s
     #[arg(
         long,
@@ -63,7 +63,7 @@ pub struct Render {
     /// Pixels
     #[arg(long, default_value = "640x360", value_name = "WIDTHxHEIGHT", value_parser = size, allow_hyphen_values = true)]
     size: [u32; 2],
-    /// Turn of the camera around the character, degrees
+    /// Rotation of the camera around the character, degrees
     #[arg(
         long,
         default_value_t = 40.0,
@@ -87,30 +87,30 @@ pub struct Render {
         allow_negative_numbers = true
     )]
     distance: f32,
-    /// How the pieces of motion are joined
-    #[arg(long, value_enum, default_value_t = Joined::Smooth)]
-    joined: Joined,
+    /// How the motion is blended where a match jumps to another frame
+    #[arg(long, value_enum, default_value_t = Blend::Inertialize)]
+    blend: Blend,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Joined {
-    /// Not at all: the pose jumps at every match
-    Not,
-    /// The paper's simple stitching, feet locked
-    Simple,
-    /// Inertialization, feet locked
-    Smooth,
+enum Blend {
+    /// The pose jumps at every match
+    None,
+    /// The paper's simple stitching: a difference that vanishes linearly; feet locked
+    Linear,
+    /// Inertialization; feet locked
+    Inertialize,
 }
 
-impl Joined {
+impl Blend {
     fn style(self) -> Style {
         match self {
-            Joined::Not => Style::RAW,
-            Joined::Simple => Style {
-                stitching: Stitching::Simple,
+            Blend::None => Style::RAW,
+            Blend::Linear => Style {
+                stitching: Stitching::Linear,
                 ..Style::BEST
             },
-            Joined::Smooth => Style::BEST,
+            Blend::Inertialize => Style::BEST,
         }
     }
 }
@@ -129,15 +129,15 @@ impl Render {
         let output = self.check()?;
         let run = Run::open(&self.run, self.data.as_deref())?;
         let gpu = Gpu::drawing()?;
-        let stage = Stage::new(
+        let context = PlaythroughContext::new(
             run.database,
             run.checkpoint.header.task,
-            self.joined.style(),
+            self.blend.style(),
         );
         let mut film = Film {
-            rollout: Rollout::new(&stage, self.episode),
+            playthrough: Playthrough::new(&context, self.episode),
             policy: Trained::from(&run.checkpoint),
-            stage,
+            context,
             camera: Camera {
                 yaw: self.yaw.to_radians(),
                 pitch: self.pitch.to_radians(),
@@ -145,10 +145,10 @@ impl Render {
                 ..Camera::default()
             },
             renderer: Renderer::new(&gpu),
-            canvas: Canvas::new(&gpu.setup.device, self.size),
+            target: RenderTarget::new(&gpu.setup.device, self.size),
         };
-        film.camera.follow(film.rollout.shown.at, 1.0);
-        film.skip((self.at * RATE as f32).round() as usize)?;
+        film.camera.follow(film.playthrough.shown.at, 1.0);
+        film.skip((self.start * RATE as f32).round() as usize)?;
         let count = ((self.seconds * self.rate as f32).round() as usize).max(1);
         let between = (RATE / self.rate) as usize;
         match &output {
@@ -175,16 +175,16 @@ impl Render {
         Ok(())
     }
 
-    /// Refuses what cannot be before anything is opened.
+    /// Refuses impossible options before anything is opened.
     fn check(&self) -> Result<Output> {
         let usage = |why: &str| Err(Usage(why.into()).into());
-        let Some(output) = Output::of(&self.output) else {
+        let Some(output) = Output::of(&self.out) else {
             return usage(
-                "--output must end in .png or .gif, or be a folder's name without an ending",
+                "--out must end in .png or .gif, or be a folder's name without an ending",
             );
         };
-        if !(0.0..=3600.0).contains(&self.at) {
-            return usage("--at must be from 0 to 3600 seconds");
+        if !(0.0..=3600.0).contains(&self.start) {
+            return usage("--start must be from 0 to 3600 seconds");
         }
         if !(self.seconds > 0.0 && self.seconds <= 600.0) {
             return usage("--seconds must be over 0 and at most 600");
@@ -209,7 +209,7 @@ impl Render {
             bail!("{} exists: give --force to write over it", path.display());
         }
         if path.exists() && path.is_dir() != matches!(output, Output::Folder(_)) {
-            bail!("{} is in the way: choose another --output", path.display());
+            bail!("{} is in the way: choose another --out", path.display());
         }
         if let Some(folder) = path
             .parent()
@@ -222,29 +222,29 @@ impl Render {
     }
 }
 
-/// A rollout before a camera.
+/// A playthrough before a camera.
 struct Film {
-    stage: Stage,
+    context: PlaythroughContext,
     policy: Trained,
-    rollout: Rollout,
+    playthrough: Playthrough,
     camera: Camera,
     renderer: Renderer,
-    canvas: Canvas,
+    target: RenderTarget,
 }
 
 impl Film {
     fn skip(&mut self, frames: usize) -> Result<()> {
         for _ in 0..frames {
-            self.rollout.advance(&self.stage, &self.policy)?;
-            self.camera.follow(self.rollout.shown.at, FOLLOW);
+            self.playthrough.advance(&self.context, &self.policy)?;
+            self.camera.follow(self.playthrough.shown.at, FOLLOW);
         }
         Ok(())
     }
 
     fn picture(&mut self) -> Result<Vec<u8>> {
-        let scene = scene(&self.rollout, &self.stage);
-        self.renderer.draw(&scene, None, &self.camera, &self.canvas);
-        self.canvas
+        let scene = scene(&self.playthrough, &self.context);
+        self.renderer.draw(&scene, None, &self.camera, &self.target);
+        self.target
             .read(&self.renderer.device, &self.renderer.queue)
     }
 }

@@ -21,7 +21,7 @@ pub fn groups(shader: &Shader, items: usize) -> [u32; 3] {
 
 /// Type of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ParamKind {
     U32,
     I32,
     F32,
@@ -31,26 +31,26 @@ pub enum Kind {
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     pub offset: usize,
-    pub kind: Kind,
+    pub kind: ParamKind,
 }
 
 /// A Rust type that may stand in a parameter struct.
 pub trait Scalar {
-    const KIND: Kind;
+    const KIND: ParamKind;
 }
 
 impl Scalar for u32 {
-    const KIND: Kind = Kind::U32;
+    const KIND: ParamKind = ParamKind::U32;
 }
 impl Scalar for i32 {
-    const KIND: Kind = Kind::I32;
+    const KIND: ParamKind = ParamKind::I32;
 }
 impl Scalar for f32 {
-    const KIND: Kind = Kind::F32;
+    const KIND: ParamKind = ParamKind::F32;
 }
 
 /// Compares at compile time.
-pub const fn same_kind(a: Kind, b: Kind) -> bool {
+pub const fn same_kind(a: ParamKind, b: ParamKind) -> bool {
     a as u8 == b as u8
 }
 

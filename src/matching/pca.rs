@@ -1,27 +1,27 @@
-//! Principal axes of the trajectory features. Their twelve numbers hang together (three places and
+//! Principal axes of the trajectory features. Their twelve numbers are correlated (three positions and
 //! directions of one path), so boxes along these axes are far tighter than along the features'.
 
-use crate::motion::database::ROW_STRIDE;
-use crate::motion::features::{POSE_DIM, TRAJECTORY_DIM};
+use crate::motion::features::{POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
 
 /// Axes of falling variance, orthonormal to the last bits of f64.
-pub struct Axes([[f64; TRAJECTORY_DIM]; TRAJECTORY_DIM]);
+pub struct PrincipalAxes([[f64; TRAJECTORY_DIM]; TRAJECTORY_DIM]);
 
-impl Axes {
+impl PrincipalAxes {
+    /// Axes of the trajectories of `rows`, of which there must be at least one.
     pub fn of(rows: &[[f32; ROW_STRIDE]]) -> Self {
         let (values, vectors) = eigen(covariance(rows));
         let mut order: [usize; TRAJECTORY_DIM] = std::array::from_fn(|i| i);
         order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
-        Axes(order.map(|axis| vectors.map(|row| row[axis])))
+        PrincipalAxes(order.map(|axis| vectors.map(|row| row[axis])))
     }
 
-    /// Rounded, one axis a row.
+    /// The axes in single precision, one a row.
     pub fn rows(&self) -> [[f32; TRAJECTORY_DIM]; TRAJECTORY_DIM] {
         self.0.map(|axis| axis.map(|value| value as f32))
     }
 
-    /// A row's trajectory along the axes.
-    pub fn turn(&self, row: &[f32; ROW_STRIDE]) -> [f32; TRAJECTORY_DIM] {
+    /// Coordinates of a row's trajectory along the axes.
+    pub fn project(&self, row: &[f32; ROW_STRIDE]) -> [f32; TRAJECTORY_DIM] {
         let trajectory: [f64; TRAJECTORY_DIM] = std::array::from_fn(|i| f64::from(row[POSE_DIM + i]));
         self.0.map(|axis| {
             let mut sum = 0.0;
@@ -95,6 +95,7 @@ fn rotate(row: &mut [f64; TRAJECTORY_DIM], p: usize, q: usize, cos: f64, sin: f6
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::motion::features::FEATURE_DIM;
     use crate::kernels::rng::{gaussian, random4};
 
     #[test]
@@ -106,24 +107,24 @@ mod tests {
                 std::array::from_fn(|d| noise(i, d as u32) / (d + 1) as f32 + common)
             })
             .collect();
-        let axes = Axes::of(&rows);
+        let axes = PrincipalAxes::of(&rows);
         for (i, a) in axes.0.iter().enumerate() {
             for (j, b) in axes.0.iter().enumerate() {
                 let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
                 assert!((dot - f64::from(u8::from(i == j))).abs() < 1e-13);
             }
         }
-        let turned: Vec<[f32; ROW_STRIDE]> = rows
+        let projected: Vec<[f32; ROW_STRIDE]> = rows
             .iter()
             .map(|row| {
-                let turned = axes.turn(row);
+                let projected = axes.project(row);
                 std::array::from_fn(|i| match i {
-                    POSE_DIM..27 => turned[i - POSE_DIM],
+                    POSE_DIM..FEATURE_DIM => projected[i - POSE_DIM],
                     _ => 0.0,
                 })
             })
             .collect();
-        let covariance = covariance(&turned);
+        let covariance = covariance(&projected);
         for i in 0..TRAJECTORY_DIM {
             assert!(i == 0 || covariance[i][i] <= covariance[i - 1][i - 1]);
             for off in &covariance[i][..i] {

@@ -1,149 +1,159 @@
 //! Boxes in whole numbers of sixteen bits: half the memory of others, and twice as many at a time.
 //!
-//! Boxes are widened to the grid, and what lies outside it is moved to its edge: both make distances
-//! only less. What moving leaves out is known ([`Beyond`]).
+//! Boxes are widened to the grid, and points outside it are moved to its edge: both make distances
+//! only less. What moving leaves out is known ([`OutOfGrid`]).
 
-use super::tree::LANES;
 use crate::motion::features::{POSE_DIM, TRAJECTORY_DIM};
 
-/// Where `D` dimensions lie in whole numbers, `P` pairs of them.
-pub struct Grid<const D: usize, const P: usize> {
-    /// The corner of zeros.
+/// Boxes side by side: the width of the widest vector registers.
+pub const LANES: usize = 16;
+
+/// A grid of `2^16` points a side in `D` dimensions, which are stored as `P` pairs.
+pub struct QuantisationGrid<const D: usize, const P: usize> {
+    /// Corner of the zeros.
     origin: [f32; D],
-    /// Whole numbers a unit.
-    fine: f32,
+    /// Grid steps a unit.
+    resolution: f32,
 }
 
-/// Of the trajectory and of the pose.
+/// Pairs of dimensions of the trajectory and of the pose.
 pub const TRAJECTORY_PAIRS: usize = TRAJECTORY_DIM.div_ceil(2);
 pub const POSE_PAIRS: usize = POSE_DIM.div_ceil(2);
 
-/// A place on a grid, or, of what has an odd number of dimensions, a 0 behind it.
-pub type Place<const P: usize> = [[u16; 2]; P];
-/// Corners of sixteen boxes, in pairs of dimensions, so that the two of a place that belong to them are
-/// one number of 32 bits, which processors spread to all lanes while they load it.
-pub type Corners<const P: usize> = [[u16; 2 * LANES]; P];
+/// A point on a grid; an odd number of dimensions is followed by a 0.
+pub type GridPoint<const P: usize> = [[u16; 2]; P];
+/// Corners of sixteen boxes, in pairs of dimensions, so that the matching two coordinates of a point are
+/// one number of 32 bits, which processors broadcast to all lanes while they load it.
+pub type QuantisedCorners<const P: usize> = [[u16; 2 * LANES]; P];
 
-/// What a place leaves out of what lies outside the grid.
-pub struct Beyond<const P: usize> {
-    /// In whole numbers, twice.
-    twice: Place<P>,
-    /// All of it, squared.
-    pub square: f32,
+/// Distance of a point outside the grid to its edge, which its grid point leaves out.
+pub struct OutOfGrid<const P: usize> {
+    /// Twice the distance along each dimension, in grid steps.
+    twice: GridPoint<P>,
+    /// Squared distance.
+    pub squared: f32,
 }
 
-impl<const P: usize> Beyond<P> {
-    pub const NOTHING: Self = Beyond {
+impl<const P: usize> OutOfGrid<P> {
+    pub const NONE: Self = OutOfGrid {
         twice: [[0; 2]; P],
-        square: 0.0,
+        squared: 0.0,
     };
 }
 
 /// Sixteen boxes on a grid.
 #[repr(align(64))]
-pub struct Rounded<const P: usize> {
-    pub low: Corners<P>,
-    pub high: Corners<P>,
+pub struct QuantisedBoxes<const P: usize> {
+    pub low: QuantisedCorners<P>,
+    pub high: QuantisedCorners<P>,
 }
 
-/// The grid's width, of that of what it is made for: queries may lie beside that.
-const ROOM: f32 = 1.5;
+/// Width of the grid relative to that of the data: queries may lie beside these.
+const MARGIN: f32 = 1.5;
 
-impl<const D: usize, const P: usize> Grid<D, P> {
-    /// Around a box.
-    pub fn around(low: &[f32; D], high: &[f32; D]) -> Self {
+impl<const D: usize, const P: usize> QuantisationGrid<D, P> {
+    /// The grid around the box from `low` to `high`.
+    pub fn enclosing(low: &[f32; D], high: &[f32; D]) -> Self {
         let widths = low.iter().zip(high).map(|(low, high)| high - low);
         // Of a point any width would do but 0.
-        let width = ROOM * widths.fold(1e-15, f32::max);
-        Grid {
+        let width = MARGIN * widths.fold(1e-15, f32::max);
+        QuantisationGrid {
             origin: std::array::from_fn(|d| 0.5 * (low[d] + high[d]) - 0.5 * width),
-            fine: f32::from(u16::MAX) / width,
+            resolution: f32::from(u16::MAX) / width,
         }
     }
 
-    /// Off by half a number, and by what rounding adds to that: a hundredth.
+    /// The nearest grid point: off by half a step, and by what rounding adds to that, a hundredth.
     #[inline(always)]
-    pub fn place(&self, values: &[f32]) -> Place<P> {
-        let mut place = [[0; 2]; P];
-        let all = place.as_flattened_mut().iter_mut();
-        for ((place, value), origin) in all.zip(values).zip(self.origin) {
-            *place = ((value - origin) * self.fine + 0.5) as u16;
+    pub fn quantise(&self, values: &[f32]) -> GridPoint<P> {
+        let mut point = [[0; 2]; P];
+        let all = point.as_flattened_mut().iter_mut();
+        for ((point, value), origin) in all.zip(values).zip(self.origin) {
+            *point = ((value - origin) * self.resolution + 0.5) as u16;
         }
-        place
+        point
     }
 
-    /// How far outside the grid values are.
+    /// Distance of a point to the grid.
     #[inline(always)]
-    pub fn beyond(&self, values: &[f32]) -> Beyond<P> {
-        let mut beyond = Beyond::NOTHING;
-        let width = f32::from(u16::MAX) / self.fine;
-        let all = beyond.twice.as_flattened_mut().iter_mut();
+    pub fn out_of_grid(&self, values: &[f32]) -> OutOfGrid<P> {
+        let mut out_of_grid = OutOfGrid::NONE;
+        let width = f32::from(u16::MAX) / self.resolution;
+        let all = out_of_grid.twice.as_flattened_mut().iter_mut();
         for ((twice, value), origin) in all.zip(values).zip(self.origin) {
             let away = (origin - value).max(value - origin - width).max(0.0);
-            *twice = (2.0 * away * self.fine) as u16;
-            beyond.square += away * away;
+            *twice = (2.0 * away * self.resolution) as u16;
+            out_of_grid.squared += away * away;
         }
-        beyond
+        out_of_grid
     }
 
-    /// Boxes are wider by a number on each side: more than what is looked for can be off. Where there is
-    /// no box (infinity), there are no rows, and its distance does not matter.
-    pub fn widen(&self, low: &[[f32; LANES]; D], high: &[[f32; LANES]; D]) -> Rounded<P> {
-        Rounded {
+    /// Boxes widened by a step on each side: more than a quantised point can be off. Lanes without a box
+    /// hold infinity; they have no rows, and their distance does not matter.
+    pub fn quantise_boxes(
+        &self,
+        low: &[[f32; LANES]; D],
+        high: &[[f32; LANES]; D],
+    ) -> QuantisedBoxes<P> {
+        QuantisedBoxes {
             low: self.corners(low, -1.0),
             high: self.corners(high, 2.0),
         }
     }
 
-    fn corners(&self, of: &[[f32; LANES]; D], more: f32) -> Corners<P> {
-        // All places behind the last dimension are 0, and so is the distance to these corners.
+    fn corners(&self, values: &[[f32; LANES]; D], offset: f32) -> QuantisedCorners<P> {
+        // All points have a 0 behind the last dimension, and so is their distance to these corners.
         let mut corners = [[0; 2 * LANES]; P];
-        for (d, values) in of.iter().enumerate() {
+        for (d, values) in values.iter().enumerate() {
             for (lane, value) in values.iter().enumerate() {
-                let place = (value - self.origin[d]) * self.fine + more;
-                corners[d / 2][2 * lane + d % 2] = place as u16;
+                let step = (value - self.origin[d]) * self.resolution + offset;
+                corners[d / 2][2 * lane + d % 2] = step as u16;
             }
         }
         corners
     }
 
-    /// Where a corner of a box lies.
-    pub fn corner(&self, corners: &Corners<P>, lane: usize) -> [f32; D] {
+    /// Position of a corner of a box.
+    pub fn corner(&self, corners: &QuantisedCorners<P>, lane: usize) -> [f32; D] {
         std::array::from_fn(|d| {
-            self.origin[d] + f32::from(corners[d / 2][2 * lane + d % 2]) / self.fine
+            self.origin[d] + f32::from(corners[d / 2][2 * lane + d % 2]) / self.resolution
         })
     }
 
-    /// Squared distances to boxes at least.
+    /// Lower bounds of the squared distances from a point to boxes.
     #[inline(always)]
-    pub fn outside(
+    pub fn squared_distances(
         &self,
-        boxes: &Rounded<P>,
-        place: &Place<P>,
-        beyond: &Beyond<P>,
+        boxes: &QuantisedBoxes<P>,
+        point: &GridPoint<P>,
+        out_of_grid: &OutOfGrid<P>,
     ) -> [f32; LANES] {
-        let unit = 65536.0 / (self.fine * self.fine);
-        let inside = boxes.outside(place, &beyond.twice);
-        inside.map(|outside| outside as f32 * unit + beyond.square)
+        let unit = 65536.0 / (self.resolution * self.resolution);
+        let inside = boxes.squared_distances(point, &out_of_grid.twice);
+        inside.map(|squared| squared as f32 * unit + out_of_grid.squared)
     }
 }
 
-impl<const P: usize> Rounded<P> {
-    /// Squared distances at least, in units of 65536: what a dimension has less than that is left out,
-    /// and what there is more than fits stops at the greatest number. Of a place that lies `beyond` its
-    /// own, (outside + beyond)^2 - beyond^2.
+impl<const P: usize> QuantisedBoxes<P> {
+    /// Lower bounds of the squared distances in units of 65536 square steps: a dimension's rest below
+    /// that is left out, and what is more than fits stops at the greatest number. Where the point was
+    /// moved to the grid's edge, (outside + moved)^2 - moved^2.
     #[inline(always)]
-    fn outside(&self, place: &Place<P>, twice_beyond: &Place<P>) -> [u32; LANES] {
-        let spread = |of: [u16; 2]| -> [u16; 2 * LANES] {
+    fn squared_distances(
+        &self,
+        point: &GridPoint<P>,
+        twice_out_of_grid: &GridPoint<P>,
+    ) -> [u32; LANES] {
+        let broadcast = |of: [u16; 2]| -> [u16; 2 * LANES] {
             bytemuck::cast([bytemuck::cast::<_, u32>(of); LANES])
         };
         let mut sums = [0u16; 2 * LANES];
         for (pair, (lows, highs)) in self.low.iter().zip(&self.high).enumerate() {
-            let (places, twice) = (spread(place[pair]), spread(twice_beyond[pair]));
+            let (points, twice) = (broadcast(point[pair]), broadcast(twice_out_of_grid[pair]));
             for i in 0..2 * LANES {
                 // One of the two is 0.
                 let outside =
-                    lows[i].saturating_sub(places[i]) | places[i].saturating_sub(highs[i]);
+                    lows[i].saturating_sub(points[i]) | points[i].saturating_sub(highs[i]);
                 let other = outside.saturating_add(twice[i]);
                 let square = (u32::from(outside) * u32::from(other)) >> 16;
                 sums[i] = sums[i].saturating_add(square as u16);
@@ -173,8 +183,8 @@ mod tests {
         (low, high)
     }
 
-    fn grid(low: &[[f32; LANES]; D], high: &[[f32; LANES]; D]) -> Grid<D, { D.div_ceil(2) }> {
-        Grid::around(
+    fn grid(low: &[[f32; LANES]; D], high: &[[f32; LANES]; D]) -> QuantisationGrid<D, { D.div_ceil(2) }> {
+        QuantisationGrid::enclosing(
             &low.map(|lanes| lanes.into_iter().fold(f32::INFINITY, f32::min)),
             &high.map(|lanes| lanes.into_iter().fold(f32::NEG_INFINITY, f32::max)),
         )
@@ -202,22 +212,22 @@ mod tests {
         {
             let (low, high) = boxes(seed as u32, scale, centre);
             let grid = grid(&low, &high);
-            let rounded = grid.widen(&low, &high);
+            let quantised = grid.quantise_boxes(&low, &high);
             // What the greatest number stands for at least: the square of the grid's width.
-            let most = (f64::from(u16::MAX) / f64::from(grid.fine)).powi(2);
+            let most = (f64::from(u16::MAX) / f64::from(grid.resolution)).powi(2);
             for (query, away) in (0..400).zip([0.0, 0.5, 3.0, 1e3].into_iter().cycle()) {
                 let noise = |d: usize| gaussian(random4(99, query, d as u32, 0)).clamp(-2.0, 2.0);
                 let at: [f32; D] =
                     std::array::from_fn(|d| centre + scale * (1.0 + away) * noise(d));
-                let beyond = grid.beyond(&at);
-                let found = grid.outside(&rounded, &grid.place(&at), &beyond);
+                let out_of_grid = grid.out_of_grid(&at);
+                let found = grid.squared_distances(&quantised, &grid.quantise(&at), &out_of_grid);
                 for (lane, found) in found.into_iter().enumerate() {
                     let exact = outside(&low, &high, &at, lane);
                     let (found, unit) = (f64::from(found), f64::from(scale).powi(2));
                     assert!(found <= exact * (1.0 + 1e-5), "{found} of {exact}");
-                    // Further away, what is twice beyond stops at the greatest number as well.
+                    // Further away, twice the distance to the grid stops at the greatest number as well.
                     if away < 1.0 {
-                        let exact = exact.min(most + f64::from(beyond.square));
+                        let exact = exact.min(most + f64::from(out_of_grid.squared));
                         assert!(found > 0.98 * exact - 0.02 * unit, "{found} of {exact}");
                     }
                 }
@@ -229,10 +239,10 @@ mod tests {
     fn boxes_around_one_point_bound_and_what_is_no_number_has_no_bound() {
         let point = [[0.25; LANES]; D];
         let grid = grid(&point, &point);
-        let rounded = grid.widen(&point, &point);
+        let quantised = grid.quantise_boxes(&point, &point);
         for (at, square) in [(0.25, 0.0), (0.75, 0.25 * D as f32), (f32::NAN, 0.0)] {
             let at = [at; D];
-            let found = grid.outside(&rounded, &grid.place(&at), &grid.beyond(&at));
+            let found = grid.squared_distances(&quantised, &grid.quantise(&at), &grid.out_of_grid(&at));
             assert!(found.iter().all(|f| (f - square).abs() < 1e-6), "{found:?}");
         }
     }

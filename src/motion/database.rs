@@ -1,22 +1,15 @@
 //! Everything motion matching and playback need of a set of clips, in plain arrays.
 
 use super::clip::Clip;
-use super::features::{TRAJECTORY_OFFSETS, FEATURE_DIM, FRAMES_PER_STEP, POSE_DIM, extract};
+use super::features::{FEATURE_DIM, FRAMES_PER_STEP, MIN_FUTURE_FRAMES, ROW_STRIDE, extract};
 use super::character_frame::to_local;
 use super::normalise::{Normalisation, Weights};
 use super::roles::Roles;
 use super::skeleton::Skeleton;
-use crate::matching::{Index, MEMORY};
 use crate::container::{Arrays, Format, StoreError};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
-
-/// Frames at a clip's end whose future is unknown: played, never matched.
-pub const MIN_FUTURE_FRAMES: usize = TRAJECTORY_OFFSETS[2];
-/// Width of a feature row padded to whole quads of four, as shaders and SIMD read it.
-pub const ROW_STRIDE: usize = 28;
+use std::path::Path;
 
 /// A clip's place in the database.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -63,7 +56,6 @@ pub struct Database {
     pub motion: Vec<RootMotion>,
     /// Changes with anything that changes what a policy meets: features and root motion.
     pub fingerprint: u32,
-    index: OnceLock<Arc<Index>>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -175,7 +167,6 @@ impl Database {
             candidates,
             motion,
             fingerprint: hash.finalize(),
-            index: OnceLock::new(),
         }
     }
 
@@ -201,12 +192,6 @@ impl Database {
             .collect()
     }
 
-    /// The index of all candidates, built when it is first asked for.
-    pub fn index(&self) -> Arc<Index> {
-        let build = || Arc::new(Index::build(&self.features, &self.candidates, MEMORY));
-        self.index.get_or_init(build).clone()
-    }
-
     /// Ground velocity (m/s, character frame: left, forward) and turning rate (degrees a second,
     /// positive to the left) of every frame but the last of its clip.
     pub fn ground_motion(&self) -> Vec<([f32; 2], f32)> {
@@ -226,12 +211,6 @@ impl Database {
                 )
             })
             .collect()
-    }
-
-    /// Writes the search's index to its place beside the database at `path`, to be found by
-    /// [`Database::load`].
-    pub fn save_index(&self, path: &Path) -> Result<(), StoreError> {
-        self.index().save(&index_beside(path), self.fingerprint)
     }
 
     /// Writes one checksummed file, whole or not at all.
@@ -308,25 +287,8 @@ impl Database {
         }
         let hips = hips.into_iter().map(Vec3::from_array).collect();
         let rotations = rotations.into_iter().map(Quat::from_array).collect();
-        let database = Self::join(header, features, ground, hips, rotations);
-        let Database {
-            fingerprint,
-            features,
-            candidates,
-            ..
-        } = &database;
-        if let Some(index) = Index::load(&index_beside(path), *fingerprint, features, candidates) {
-            database.index.get_or_init(|| Arc::new(index));
-        }
-        Ok(database)
+        Ok(Self::join(header, features, ground, hips, rotations))
     }
-}
-
-/// `walk.footwork.index` for `walk.footwork`.
-fn index_beside(path: &Path) -> PathBuf {
-    let mut name = path.as_os_str().to_os_string();
-    name.push(".index");
-    PathBuf::from(name)
 }
 
 fn pad(row: &[f32; FEATURE_DIM]) -> [f32; ROW_STRIDE] {
@@ -354,5 +316,3 @@ fn root_motion(path: &[[f32; 4]], frame: usize) -> RootMotion {
         length,
     }
 }
-
-const _: () = assert!(ROW_STRIDE >= FEATURE_DIM && ROW_STRIDE.is_multiple_of(4) && POSE_DIM < FEATURE_DIM);

@@ -3,11 +3,11 @@
 use crate::container::StoreError;
 use std::path::{Path, PathBuf};
 
-pub type Result<T> = std::result::Result<T, Error>;
+pub type MotionResult<T> = Result<T, MotionError>;
 
 /// Each message says what is wrong, where, and what to do about it.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum MotionError {
     #[error("cannot read {}: {error}; check that it exists and may be read", .path.display())]
     Read {
         path: PathBuf,
@@ -83,13 +83,13 @@ pub enum Error {
 
     /// An error of a function that knows no files, met while working on this one.
     #[error("{}: {error}", .path.display())]
-    In { path: PathBuf, error: Box<Error> },
+    In { path: PathBuf, error: Box<MotionError> },
 }
 
-impl Error {
+impl MotionError {
     /// The same error, saying which file it was met in.
-    pub fn within(self, path: &Path) -> Error {
-        Error::In {
+    pub fn within(self, path: &Path) -> MotionError {
+        MotionError::In {
             path: path.to_path_buf(),
             error: Box::new(self),
         }

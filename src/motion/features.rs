@@ -14,13 +14,19 @@ pub const POSE_DIM: usize = 15;
 pub const TRAJECTORY_DIM: usize = 12;
 /// Width of a feature row, c then t (paper, section 3).
 pub const FEATURE_DIM: usize = POSE_DIM + TRAJECTORY_DIM;
+/// Length of a feature row padded to whole vectors of four, as shaders and SIMD read it.
+pub const ROW_STRIDE: usize = 28;
 /// The frames ahead that t looks at.
 pub const TRAJECTORY_OFFSETS: [usize; 3] = [10, 20, 30];
+/// Frames at a clip's end whose future is unknown: played, never matched.
+pub const MIN_FUTURE_FRAMES: usize = TRAJECTORY_OFFSETS[2];
 /// Frames played between two matches: one step of the policy, 0.2 s.
 pub const FRAMES_PER_STEP: usize = 6;
 
+const _: () = assert!(ROW_STRIDE >= FEATURE_DIM && ROW_STRIDE.is_multiple_of(4));
+
 /// The character's path on the ground and the features of every frame of a clip.
-pub struct Track {
+pub struct FeatureTrack {
     /// `[x, z]` of the smoothed root, m.
     pub ground: Vec<[f32; 2]>,
     /// Unit forward direction `[x, z]`.
@@ -53,7 +59,7 @@ impl Points {
 }
 
 /// Path and features of a clip of at least [`super::smooth::WINDOW`] frames.
-pub fn extract(clip: &Clip, roles: &Roles) -> Track {
+pub fn extract(clip: &Clip, roles: &Roles) -> FeatureTrack {
     let points: Vec<Points> = (0..clip.frames())
         .map(|frame| Points::of(clip, roles, frame))
         .collect();
@@ -73,7 +79,7 @@ pub fn extract(clip: &Clip, roles: &Roles) -> Track {
             row
         })
         .collect();
-    Track {
+    FeatureTrack {
         ground,
         heading,
         features,

@@ -2,7 +2,7 @@
 
 use super::bvh::{self, Recording};
 use super::clip::Clip;
-use super::error::{Error, Result};
+use super::error::{MotionError, MotionResult};
 use super::manifest::{self, Entry, Manifest};
 use super::mirror::mirror;
 use super::resample::resample;
@@ -28,7 +28,7 @@ pub struct ImportOptions {
 
 /// Clips of one tree of joints (bone lengths may differ), and what their user should know.
 #[derive(Clone, Debug)]
-pub struct Import {
+pub struct ImportedMotion {
     /// In the order of the file names.
     pub clips: Vec<Clip>,
     pub roles: Roles,
@@ -41,14 +41,14 @@ pub struct Import {
 /// A `manifest.csv` in the folder or the one above gives units, T-poses, licence and source of
 /// the files it names; for others units and T-poses are found from the motion.
 ///
-/// Errors: see [`Error`]; any file that cannot be read fails the whole import.
-pub fn import(path: &Path, options: &ImportOptions) -> Result<Import> {
+/// Errors: see [`MotionError`]; any file that cannot be read fails the whole import.
+pub fn import(path: &Path, options: &ImportOptions) -> MotionResult<ImportedMotion> {
     check_unit(options)?;
     let files = files(path)?;
     let listing = Listing::beside(&files[0])?;
     // Results are put in order first, so that of several errors the first file's is shown.
-    let recordings: Vec<Result<Recording>> = files.par_iter().map(|f| bvh::read(f)).collect();
-    let recordings: Vec<Recording> = recordings.into_iter().collect::<Result<_>>()?;
+    let recordings: Vec<MotionResult<Recording>> = files.par_iter().map(|f| bvh::read(f)).collect();
+    let recordings: Vec<Recording> = recordings.into_iter().collect::<MotionResult<_>>()?;
     check_same_tree(&files, &recordings)?;
 
     let skeleton = &recordings[0].skeleton;
@@ -56,7 +56,7 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Import> {
         Some(file) => Roles::read(file, skeleton)?,
         None => Roles::find(skeleton).map_err(|error| error.within(&files[0]))?,
     };
-    let prepared: Vec<Result<Prepared>> = files
+    let prepared: Vec<MotionResult<Prepared>> = files
         .par_iter()
         .zip(recordings)
         .map(|(file, recording)| {
@@ -64,13 +64,13 @@ pub fn import(path: &Path, options: &ImportOptions) -> Result<Import> {
             prepare(file, recording, entry, &roles, options).map_err(|error| error.within(file))
         })
         .collect();
-    let prepared: Vec<Prepared> = prepared.into_iter().collect::<Result<_>>()?;
+    let prepared: Vec<Prepared> = prepared.into_iter().collect::<MotionResult<_>>()?;
     collect(path, prepared, roles, options)
 }
 
-fn check_unit(options: &ImportOptions) -> Result<()> {
+fn check_unit(options: &ImportOptions) -> MotionResult<()> {
     match options.unit_m {
-        Some(unit) if !(unit.is_finite() && unit > 0.0) => Err(Error::Unit {
+        Some(unit) if !(unit.is_finite() && unit > 0.0) => Err(MotionError::Unit {
             problem: format!("{unit} was given, which is no length"),
         }),
         _ => Ok(()),
@@ -78,8 +78,8 @@ fn check_unit(options: &ImportOptions) -> Result<()> {
 }
 
 /// The file itself, or the BVH files of a folder by name; never empty.
-fn files(path: &Path) -> Result<Vec<PathBuf>> {
-    let unreadable = |error| Error::Read {
+fn files(path: &Path) -> MotionResult<Vec<PathBuf>> {
+    let unreadable = |error| MotionError::Read {
         path: path.to_path_buf(),
         error,
     };
@@ -105,7 +105,7 @@ fn files(path: &Path) -> Result<Vec<PathBuf>> {
     }
     folders.sort();
     let promising = folders.iter().find(|f| files_in(f) > 0);
-    Err(Error::NoFiles {
+    Err(MotionError::NoFiles {
         path: path.to_path_buf(),
         advice: match promising {
             Some(folder) => format!("folders are imported one by one: try {}", folder.display()),
@@ -128,8 +128,8 @@ struct Listing {
 
 impl Listing {
     /// The manifest in the file's folder, else the one above, else an empty one.
-    fn beside(file: &Path) -> Result<Listing> {
-        let file = file.canonicalize().map_err(|error| Error::Read {
+    fn beside(file: &Path) -> MotionResult<Listing> {
+        let file = file.canonicalize().map_err(|error| MotionError::Read {
             path: file.to_path_buf(),
             error,
         })?;
@@ -153,12 +153,12 @@ fn name(name: Option<&std::ffi::OsStr>) -> String {
     name.map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
-fn check_same_tree(files: &[PathBuf], recordings: &[Recording]) -> Result<()> {
+fn check_same_tree(files: &[PathBuf], recordings: &[Recording]) -> MotionResult<()> {
     let first = &recordings[0].skeleton;
     let other = recordings.iter().position(|r| !r.skeleton.same_tree(first));
     match other {
         None => Ok(()),
-        Some(other) => Err(Error::Skeletons {
+        Some(other) => Err(MotionError::Skeletons {
             first: files[0].clone(),
             second: files[other].clone(),
             difference: difference(first, &recordings[other].skeleton),
@@ -196,7 +196,7 @@ fn prepare(
     entry: Option<&Entry>,
     roles: &Roles,
     options: &ImportOptions,
-) -> Result<Prepared> {
+) -> MotionResult<Prepared> {
     let frames = recording.frames();
     let (head, tail) = match entry {
         Some(entry) => (entry.skip_head, entry.skip_tail),
@@ -227,7 +227,7 @@ fn collect(
     prepared: Vec<Prepared>,
     roles: Roles,
     options: &ImportOptions,
-) -> Result<Import> {
+) -> MotionResult<ImportedMotion> {
     let mut notes = Vec::new();
     let detected = prepared.iter().filter(|p| p.detected > 0);
     let listed: Vec<String> = detected
@@ -253,21 +253,21 @@ fn collect(
         notes.push(format!("left out, {short_frames} frames in all, for being shorter than {MIN_FRAMES} frames at 30 Hz: {}", short.join(", ")));
     }
     if clips.is_empty() {
-        return Err(Error::NoClips {
+        return Err(MotionError::NoClips {
             path: path.to_path_buf(),
             reasons: notes.join("; "),
             frames: MIN_FRAMES,
         });
     }
     if options.mirror {
-        let mirrored: Vec<Result<Clip>> = clips.par_iter().map(mirror).collect();
+        let mirrored: Vec<MotionResult<Clip>> = clips.par_iter().map(mirror).collect();
         for clip in mirrored {
             let clip = clip.map_err(|error| error.within(path))?;
             let name = format!("{} mirrored", clip.name);
             clips.push(Clip { name, ..clip });
         }
     }
-    Ok(Import {
+    Ok(ImportedMotion {
         clips,
         roles,
         notes,

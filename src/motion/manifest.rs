@@ -1,6 +1,6 @@
 //! `manifest.csv`: what is known about the recordings of a folder.
 
-use super::error::{Error, Result};
+use super::error::{MotionError, MotionResult};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -23,11 +23,11 @@ pub type Manifest = HashMap<String, Entry>;
 ///
 /// A comma separated table. Its first row names the columns; only `file` must be there. Fields
 /// may be quoted, because descriptions have commas in them.
-pub fn read(path: &Path) -> Result<Option<Manifest>> {
+pub fn read(path: &Path) -> MotionResult<Option<Manifest>> {
     match std::fs::read_to_string(path) {
         Ok(text) => parse(&text, path).map(Some),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(Error::Read {
+        Err(error) => Err(MotionError::Read {
             path: path.to_path_buf(),
             error,
         }),
@@ -35,8 +35,8 @@ pub fn read(path: &Path) -> Result<Option<Manifest>> {
 }
 
 /// Reads the text of a manifest; `path` is only for messages.
-pub fn parse(text: &str, path: &Path) -> Result<Manifest> {
-    let fault = |line, problem: String| Error::Manifest {
+pub fn parse(text: &str, path: &Path) -> MotionResult<Manifest> {
+    let fault = |line, problem: String| MotionError::Manifest {
         path: path.to_path_buf(),
         line,
         problem,
@@ -70,7 +70,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Manifest> {
     Ok(manifest)
 }
 
-fn entry(row: &HashMap<&str, &str>) -> std::result::Result<Entry, String> {
+fn entry(row: &HashMap<&str, &str>) -> Result<Entry, String> {
     let text = |column: &str| row.get(column).map_or("", |field| field.trim());
     let frames = |column: &str| match text(column) {
         "" => Ok(0),
@@ -95,7 +95,7 @@ fn entry(row: &HashMap<&str, &str>) -> std::result::Result<Entry, String> {
 }
 
 /// Rows with the line each begins on (from 1); the error is the line of an open quote.
-fn rows(text: &str) -> std::result::Result<Vec<(usize, Vec<String>)>, usize> {
+fn rows(text: &str) -> Result<Vec<(usize, Vec<String>)>, usize> {
     let mut rows = Vec::new();
     let (mut row, mut field) = (Vec::new(), String::new());
     let (mut line, mut begin, mut quoted) = (1, 1, None);

@@ -6,7 +6,7 @@
 //! their bones (LaFAN1's legs run along x; its sides differ in z).
 
 use super::clip::Clip;
-use super::error::{Error, Result};
+use super::error::{MotionError, MotionResult};
 use super::skeleton::Skeleton;
 use glam::{Quat, Vec3};
 
@@ -19,7 +19,7 @@ const LIKENESS: f32 = 0.25;
 ///
 /// Errors: a sided joint without its counterpart, sides that hang on the tree differently or
 /// are not each other's reflection in any axis.
-pub fn mirror(clip: &Clip) -> Result<Clip> {
+pub fn mirror(clip: &Clip) -> MotionResult<Clip> {
     let skeleton = &clip.skeleton;
     let pairs = pairs(skeleton)?;
     let axis = axis(skeleton, &pairs)?;
@@ -41,7 +41,7 @@ pub fn mirror(clip: &Clip) -> Result<Clip> {
 }
 
 /// For each joint its counterpart on the other side; a joint of the middle is its own.
-pub fn pairs(skeleton: &Skeleton) -> Result<Vec<usize>> {
+pub fn pairs(skeleton: &Skeleton) -> MotionResult<Vec<usize>> {
     let find = |name: &str| skeleton.names.iter().position(|n| n == name);
     let mut pairs = Vec::with_capacity(skeleton.joints());
     for (joint, name) in skeleton.names.iter().enumerate() {
@@ -49,7 +49,7 @@ pub fn pairs(skeleton: &Skeleton) -> Result<Vec<usize>> {
             pairs.push(joint);
             continue;
         };
-        pairs.push(find(&other).ok_or_else(|| Error::Mirror {
+        pairs.push(find(&other).ok_or_else(|| MotionError::Mirror {
             problem: format!("'{name}' has no counterpart '{other}'"),
         })?);
     }
@@ -57,7 +57,7 @@ pub fn pairs(skeleton: &Skeleton) -> Result<Vec<usize>> {
         let other = pairs[joint];
         let same_place = skeleton.parents[other] == parent.map(|parent| pairs[parent]);
         if pairs[other] != joint || !same_place {
-            return Err(Error::Mirror {
+            return Err(MotionError::Mirror {
                 problem: format!(
                     "'{}' and '{}' do not hang on the tree alike",
                     skeleton.names[joint], skeleton.names[other]
@@ -101,7 +101,7 @@ fn other_side(name: &str) -> Option<String> {
 }
 
 /// The axis (0, 1, 2) whose reflection maps the offsets of each side on the other's best.
-fn axis(skeleton: &Skeleton, pairs: &[usize]) -> Result<usize> {
+fn axis(skeleton: &Skeleton, pairs: &[usize]) -> MotionResult<usize> {
     let bones = 1..skeleton.joints();
     let total: f32 = bones.clone().map(|j| skeleton.offsets[j].length()).sum();
     let misfit = |axis: usize| -> f32 {
@@ -116,7 +116,7 @@ fn axis(skeleton: &Skeleton, pairs: &[usize]) -> Result<usize> {
         .unwrap_or(0);
     match misfit(best) <= LIKENESS * total {
         true => Ok(best),
-        false => Err(Error::Mirror {
+        false => Err(MotionError::Mirror {
             problem: "no axis of the joints maps the left bones on the right ones".to_string(),
         }),
     }

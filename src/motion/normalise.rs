@@ -1,4 +1,4 @@
-//! One mean a dimension, one deviation a group, one weight a group.
+//! Normalisation of features: one mean a dimension, one standard deviation and one weight a group.
 
 use super::features::{FEATURE_DIM, POSE_DIM};
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ pub struct Weights {
 }
 
 impl Weights {
-    /// The paper names none.
+    /// Weight 1 for all: the paper names none.
     pub const PAPER: Weights = Weights {
         foot_position: 1.0,
         foot_velocity: 1.0,
@@ -23,8 +23,8 @@ impl Weights {
         trajectory_position: 1.0,
         trajectory_direction: 1.0,
     };
-    /// As in Daniel Holden's Motion-Matching.
-    pub const ORANGEDUCK: Weights = Weights {
+    /// Daniel Holden's, of <https://github.com/orangeduck/Motion-Matching>.
+    pub const HOLDEN: Weights = Weights {
         foot_position: 0.75,
         trajectory_direction: 1.5,
         ..Weights::PAPER
@@ -79,13 +79,13 @@ impl Normalisation {
             members[group(i)] += 1.0;
         }
         let scale = std::array::from_fn(|i| {
-            let deviation = (variance[group(i)] / members[group(i)]).sqrt();
-            let deviation = if deviation > 1e-6 {
-                deviation as f32
+            let std_dev = (variance[group(i)] / members[group(i)]).sqrt();
+            let std_dev = if std_dev > 1e-6 {
+                std_dev as f32
             } else {
                 1.0
             };
-            weights.of(group(i)) / deviation
+            weights.of(group(i)) / std_dev
         });
         Normalisation {
             mean: mean.map(|m| m as f32),
@@ -122,7 +122,7 @@ mod tests {
         let rows: Vec<[f32; FEATURE_DIM]> = (0..200)
             .map(|k| std::array::from_fn(|i| ((k * (i + 3)) % 17) as f32 * (i as f32 + 1.0)))
             .collect();
-        let normalisation = Normalisation::of(rows.iter(), &Weights::ORANGEDUCK);
+        let normalisation = Normalisation::of(rows.iter(), &Weights::HOLDEN);
         let normal: Vec<_> = rows.iter().map(|row| normalisation.apply(row)).collect();
         for g in 0..GROUPS {
             let members: Vec<usize> = (0..FEATURE_DIM).filter(|&i| group(i) == g).collect();
@@ -136,7 +136,7 @@ mod tests {
                     .sum::<f32>()
                     / 200.0;
             }
-            let weight = Weights::ORANGEDUCK.of(g);
+            let weight = Weights::HOLDEN.of(g);
             assert!((variance / members.len() as f32 - weight * weight).abs() < 1e-3);
         }
     }

@@ -1,6 +1,6 @@
 //! Which joint plays which part: found by name, or told by a small file.
 
-use super::error::{Error, Result};
+use super::error::{MotionError, MotionResult};
 use super::skeleton::Skeleton;
 use std::path::Path;
 
@@ -49,7 +49,7 @@ impl Roles {
     /// and most others that say left and right by a word or a letter.
     ///
     /// Errors: roles that no joint's name fits, with the list of joints.
-    pub fn find(skeleton: &Skeleton) -> Result<Roles> {
+    pub fn find(skeleton: &Skeleton) -> MotionResult<Roles> {
         Self::complete([None; 9], skeleton)
     }
 
@@ -57,11 +57,11 @@ impl Roles {
     /// out is found by name.
     ///
     /// Errors: an unreadable file, unknown keys, unknown joints (each names the nearest known).
-    pub fn read(path: &Path, skeleton: &Skeleton) -> Result<Roles> {
+    pub fn read(path: &Path, skeleton: &Skeleton) -> MotionResult<Roles> {
         let text =
             std::fs::read_to_string(path).map_err(|error| format!("cannot be read: {error}"));
         let given = text.and_then(|text| given(&text, skeleton));
-        let given = given.map_err(|problem| Error::RolesFile {
+        let given = given.map_err(|problem| MotionError::RolesFile {
             path: path.to_path_buf(),
             problem,
         })?;
@@ -69,7 +69,7 @@ impl Roles {
     }
 
     /// Fills in by name what is not given.
-    fn complete(mut given: [Option<usize>; 9], skeleton: &Skeleton) -> Result<Roles> {
+    fn complete(mut given: [Option<usize>; 9], skeleton: &Skeleton) -> MotionResult<Roles> {
         let names: Vec<String> = skeleton.names.iter().map(|name| plain(name)).collect();
         for (role, joint) in given.iter_mut().enumerate() {
             *joint = joint.or_else(|| by_name(role, &names));
@@ -94,7 +94,7 @@ impl Roles {
             right_shoulder,
         ] = found.as_slice()
         else {
-            return Err(Error::MissingRoles {
+            return Err(MotionError::MissingRoles {
                 missing: missing.join(", "),
                 joints: skeleton.names.join(", "),
             });
@@ -130,7 +130,7 @@ impl Roles {
     }
 
     /// The parts must be different joints, and feet hang below their hips below the pelvis.
-    fn check(&self, skeleton: &Skeleton) -> Result<()> {
+    fn check(&self, skeleton: &Skeleton) -> MotionResult<()> {
         let joints = self.joints();
         let chains = [
             (1, 0),
@@ -145,7 +145,7 @@ impl Roles {
         for (low, high) in chains {
             let toe_is_foot = (low == 5 || low == 6) && joints[low] == joints[high];
             if !toe_is_foot && !below(skeleton, joints[low], joints[high]) {
-                return Err(Error::Roles {
+                return Err(MotionError::Roles {
                     problem: format!(
                         "{} ('{}') does not hang below {} ('{}')",
                         ROLES[low],
@@ -158,7 +158,7 @@ impl Roles {
         }
         for left in [1, 3, 5, 7] {
             if joints[left] == joints[left + 1] {
-                return Err(Error::Roles {
+                return Err(MotionError::Roles {
                     problem: format!(
                         "{} and {} are both '{}'",
                         ROLES[left],
@@ -214,7 +214,7 @@ fn by_name(role: usize, names: &[String]) -> Option<usize> {
 }
 
 /// The roles that a file names, in the order of [`ROLES`].
-fn given(text: &str, skeleton: &Skeleton) -> std::result::Result<[Option<usize>; 9], String> {
+fn given(text: &str, skeleton: &Skeleton) -> Result<[Option<usize>; 9], String> {
     // The parser's message shows the line and points at the place.
     let table: toml::Table = text
         .parse()

@@ -6,7 +6,7 @@
 //! more than a factor of 2.1 apart, so at most one of them gives a leg of 0.55 to 1.15 m. If
 //! none does, the skeleton is scaled to a leg of 0.85 m.
 
-use super::error::{Error, Result};
+use super::error::{MotionError, MotionResult};
 use super::roles::Roles;
 use super::skeleton::Skeleton;
 
@@ -22,10 +22,10 @@ const POSSIBLE_LEGS: std::ops::Range<f32> = 0.05..20.0;
 /// fits, else whatever makes the legs 0.85 m long.
 ///
 /// Errors: legs without length.
-pub fn find(skeleton: &Skeleton, roles: &Roles) -> Result<f32> {
+pub fn find(skeleton: &Skeleton, roles: &Roles) -> MotionResult<f32> {
     let leg = leg(skeleton, roles);
     if !(leg.is_finite() && leg > 1e-6) {
-        return Err(Error::Unit {
+        return Err(MotionError::Unit {
             problem: format!("the legs are {leg} units long"),
         });
     }
@@ -34,12 +34,12 @@ pub fn find(skeleton: &Skeleton, roles: &Roles) -> Result<f32> {
 }
 
 /// Refuses a given unit that cannot be meant.
-pub fn check(unit: f32, skeleton: &Skeleton, roles: &Roles) -> Result<()> {
+pub fn check(unit: f32, skeleton: &Skeleton, roles: &Roles) -> MotionResult<()> {
     let leg = unit * leg(skeleton, roles);
     if POSSIBLE_LEGS.contains(&leg) {
         return Ok(());
     }
-    Err(Error::Unit {
+    Err(MotionError::Unit {
         problem: format!("with {unit} m the legs would be {leg} m long"),
     })
 }

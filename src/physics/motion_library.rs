@@ -21,7 +21,7 @@ pub enum Error {
     )]
     Empty,
     #[error(transparent)]
-    Motion(#[from] motion::Error),
+    Motion(#[from] motion::MotionError),
     #[error("the clip '{clip}' cannot be put into the body: {error}")]
     Retarget {
         clip: String,

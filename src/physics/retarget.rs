@@ -30,7 +30,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]
-    Motion(#[from] motion::Error),
+    Motion(#[from] motion::MotionError),
     #[error(
         "the model '{model}' has no {kind} joint on a body '{body}': recordings are for bodies like the \
          humanoid, whose parts are called {}", humanoid::BODIES.join(", ")

@@ -1,6 +1,6 @@
-//! When a foot stands, and on what: from the speed and height of heel and toe.
+//! Foot contacts of the recordings, from the speed and height of heel and toe.
 
-use super::leg::{Leg, world};
+use super::leg::{LegJoints, world};
 use crate::motion::RATE;
 use crate::motion::database::Database;
 use glam::{Quat, Vec3};
@@ -15,7 +15,7 @@ const AROUND: usize = 2;
 
 /// The part of a foot that bears weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Contact {
+pub enum FootContact {
     Air,
     Heel,
     /// The ball, with or without the heel.
@@ -24,43 +24,44 @@ pub enum Contact {
 
 /// Heel and toe, the points of the sole, in the world, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sole {
+pub struct SolePoints {
     pub heel: Vec3,
     pub toe: Vec3,
 }
 
-impl Sole {
-    pub fn of(leg: &Leg, positions: &[Vec3], rotations: &[Quat]) -> Sole {
-        Sole {
+impl SolePoints {
+    /// The sole of a leg in a pose.
+    pub fn of(leg: &LegJoints, positions: &[Vec3], rotations: &[Quat]) -> SolePoints {
+        SolePoints {
             heel: positions[leg.foot] + rotations[leg.foot] * leg.heel,
             toe: positions[leg.toe],
         }
     }
 
     /// The point that bears the weight.
-    pub fn point(&self, contact: Contact) -> Option<Vec3> {
+    pub fn point(&self, contact: FootContact) -> Option<Vec3> {
         match contact {
-            Contact::Air => None,
-            Contact::Heel => Some(self.heel),
-            Contact::Toe => Some(self.toe),
+            FootContact::Air => None,
+            FootContact::Heel => Some(self.heel),
+            FootContact::Toe => Some(self.toe),
         }
     }
 }
 
 /// The contacts of both feet in every frame of the database, left first.
-pub fn contacts(database: &Database, legs: &[Leg; 2]) -> Vec<[Contact; 2]> {
-    let soles: Vec<[Sole; 2]> = (0..database.frames())
+pub fn contacts(database: &Database, legs: &[LegJoints; 2]) -> Vec<[FootContact; 2]> {
+    let soles: Vec<[SolePoints; 2]> = (0..database.frames())
         .into_par_iter()
         .map(|frame| {
             let (positions, rotations) = world(database, frame);
-            [0, 1].map(|side| Sole::of(&legs[side], &positions, &rotations))
+            [0, 1].map(|side| SolePoints::of(&legs[side], &positions, &rotations))
         })
         .collect();
-    let mut contacts = vec![[Contact::Air; 2]; soles.len()];
+    let mut contacts = vec![[FootContact::Air; 2]; soles.len()];
     for clip in &database.clips {
         let frames = clip.first..clip.first + clip.frames;
         for side in [0, 1] {
-            let soles: Vec<Sole> = soles[frames.clone()]
+            let soles: Vec<SolePoints> = soles[frames.clone()]
                 .iter()
                 .map(|both| both[side])
                 .collect();
@@ -68,9 +69,9 @@ pub fn contacts(database: &Database, legs: &[Leg; 2]) -> Vec<[Contact; 2]> {
             let heel = standing(&soles.iter().map(|sole| sole.heel).collect::<Vec<_>>());
             for (frame, both) in contacts[frames.clone()].iter_mut().enumerate() {
                 both[side] = match (toe[frame], heel[frame]) {
-                    (true, _) => Contact::Toe,
-                    (false, true) => Contact::Heel,
-                    (false, false) => Contact::Air,
+                    (true, _) => FootContact::Toe,
+                    (false, true) => FootContact::Heel,
+                    (false, false) => FootContact::Air,
                 };
             }
         }
@@ -78,7 +79,7 @@ pub fn contacts(database: &Database, legs: &[Leg; 2]) -> Vec<[Contact; 2]> {
     contacts
 }
 
-/// Where a point of a sole stands.
+/// Whether a point of a sole stands, frame by frame.
 fn standing(points: &[Vec3]) -> Vec<bool> {
     let mut heights: Vec<f32> = points.iter().map(|point| point.y).collect();
     heights.sort_by(f32::total_cmp);

@@ -1,50 +1,50 @@
 //! Foot locking: a standing foot stays where it came down.
 
-use super::contact::{Contact, Sole};
-use super::inertialize::Fade;
+use super::contact::{FootContact, SolePoints};
+use super::inertialize::InertializedOffset;
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// A foot comes down where it is shown if that is no farther than this from where the recording has
-/// it, m; else it steps over there.
+/// A foot comes down at its shown position if that is no farther than this from the recorded one, m;
+/// else it steps over there.
 const NEAR: f32 = 0.35;
 /// Frames that such a step takes.
 const STEP: f32 = 3.0;
 /// How high it rises, per metre of its way, and at most, m.
 const LIFT: f32 = 0.3;
 const HIGHEST: f32 = 0.12;
-/// Frames until the correction of a foot that stands no more is gone.
+/// Frames until the correction of a released foot has decayed.
 const RELEASE: f32 = 12.0;
 
 /// One foot's lock.
 #[derive(Clone, Debug, Default)]
 pub struct FootLock {
     held: Option<Hold>,
-    /// Of what was added to the foot in the last frame and in the one before, m.
+    /// Added to the foot in the last frame and in the one before, m.
     corrections: [Vec3; 2],
-    /// What is left of the correction of a foot that stands no more, and frames since.
-    fade: Fade,
+    /// The decaying correction of a foot that was released, and frames since.
+    release: InertializedOffset,
     age: f32,
 }
 
 /// A foot that stands, or steps to where it will.
 #[derive(Clone, Copy, Debug)]
 struct Hold {
-    contact: Contact,
-    /// Where the bearing point stands, on the ground, m; its height is the recording's.
-    place: Vec3,
-    /// From there to where it is shown.
-    step: Fade,
+    contact: FootContact,
+    /// Position of the bearing point on the ground, m; its height is the recording's.
+    position: Vec3,
+    /// From there to its shown position.
+    step: InertializedOffset,
     lift: f32,
     age: f32,
-    /// Where it was shown last, m.
+    /// Its last shown position, m.
     shown: Vec3,
 }
 
 impl FootLock {
-    /// What to add to the foot's position in the next frame, m: `sole` is where the stitched motion
-    /// puts it, `recorded` where the recording has it.
-    pub fn next(&mut self, sole: &Sole, recorded: &Sole, contact: Contact) -> Vec3 {
+    /// The correction of the foot's position in the next frame, m: `sole` is its position in the stitched
+    /// motion, `recorded` that in the recording.
+    pub fn next(&mut self, sole: &SolePoints, recorded: &SolePoints, contact: FootContact) -> Vec3 {
         self.age += 1.0;
         let correction = match (sole.point(contact), recorded.point(contact)) {
             (Some(point), Some(recorded)) => self.stand(point, recorded, contact),
@@ -54,8 +54,8 @@ impl FootLock {
         correction
     }
 
-    fn stand(&mut self, point: Vec3, recorded: Vec3, contact: Contact) -> Vec3 {
-        let near = |hold: &Hold| level(hold.place - recorded).length() <= NEAR;
+    fn stand(&mut self, point: Vec3, recorded: Vec3, contact: FootContact) -> Vec3 {
+        let near = |hold: &Hold| level(hold.position - recorded).length() <= NEAR;
         let held = self
             .held
             .filter(|hold| hold.contact == contact && near(hold));
@@ -64,7 +64,7 @@ impl FootLock {
             None => self.come_down(point, recorded, contact),
         };
         let height = Vec3::Y * (recorded.y + hold.lift * (PI * (hold.age / STEP).min(1.0)).sin());
-        let shown = hold.place + height + hold.step.at(hold.age, STEP);
+        let shown = hold.position + height + hold.step.at(hold.age, STEP);
         (hold.age, hold.shown) = (hold.age + 1.0, shown);
         self.held = Some(hold);
         shown - point
@@ -72,20 +72,20 @@ impl FootLock {
 
     /// A foot comes down, or rolls from heel to toe, or the motion has jumped to one in which it stands
     /// elsewhere.
-    fn come_down(&mut self, point: Vec3, recorded: Vec3, contact: Contact) -> Hold {
+    fn come_down(&mut self, point: Vec3, recorded: Vec3, contact: FootContact) -> Hold {
         let shown = match self.held {
             Some(hold) if hold.contact == contact => hold.shown,
             _ => point + self.rest(),
         };
         let way = level(shown - recorded);
         let far = way.length() > NEAR;
-        let place = level(if far { recorded } else { shown });
+        let position = level(if far { recorded } else { shown });
         Hold {
             contact,
-            place,
-            step: Fade {
-                value: shown - place - Vec3::Y * recorded.y,
-                ..Fade::default()
+            position,
+            step: InertializedOffset {
+                value: shown - position - Vec3::Y * recorded.y,
+                ..InertializedOffset::default()
             },
             shown,
             lift: if far {
@@ -97,17 +97,17 @@ impl FootLock {
         }
     }
 
-    /// The correction of a foot that is not held: the one it had when it was let go, fading.
+    /// The correction of a foot that is not held: the one it had when it was released, decaying.
     fn rest(&mut self) -> Vec3 {
         if self.held.take().is_some() {
-            self.fade = Fade {
+            self.release = InertializedOffset {
                 value: self.corrections[0],
                 velocity: self.corrections[0] - self.corrections[1],
                 acceleration: Vec3::ZERO,
             };
             self.age = 1.0;
         }
-        self.fade.at(self.age, RELEASE)
+        self.release.at(self.age, RELEASE)
     }
 }
 

@@ -1,26 +1,26 @@
-//! A difference that fades away.
+//! Inertialization: an offset that decays smoothly to zero.
 
 use glam::Vec3;
 
-/// A difference and its first two rates of change, per frame, at the moment it began to fade.
+/// An offset and its first two derivatives, per frame, at the moment it begins to decay.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Fade {
+pub struct InertializedOffset {
     pub value: Vec3,
     pub velocity: Vec3,
     pub acceleration: Vec3,
 }
 
-impl Fade {
-    /// From three values a frame apart; the fading begins at the middle one.
-    pub fn through(before: Vec3, now: Vec3, after: Vec3) -> Fade {
-        Fade {
+impl InertializedOffset {
+    /// The offset through three values a frame apart; it begins to decay at the middle one.
+    pub fn through(before: Vec3, now: Vec3, after: Vec3) -> InertializedOffset {
+        InertializedOffset {
             value: now,
             velocity: 0.5 * (after - before),
             acceleration: after - 2.0 * now + before,
         }
     }
 
-    /// What is left after `age` frames of `frames`: the quintic that begins as given and ends at rest
+    /// The offset left after `age` frames of `frames`: the quintic that begins as given and ends at rest
     /// (Bollo, "Inertialization", GDC 2018, here for whole vectors).
     pub fn at(&self, age: f32, frames: f32) -> Vec3 {
         let s = age / frames;
@@ -41,25 +41,25 @@ mod tests {
 
     #[test]
     fn begins_as_given_and_ends_at_rest() {
-        let fade = Fade {
+        let offset = InertializedOffset {
             value: Vec3::new(1.0, 0.0, 0.0),
             velocity: Vec3::new(0.0, 0.1, 0.0),
             acceleration: Vec3::new(0.0, 0.0, 0.02),
         };
         // Wide steps: differences of differences leave f32 few digits.
         let (step, frames) = (0.1, 12.0);
-        let slope =
-            |age: f32| (fade.at(age + step, frames) - fade.at(age - step, frames)) / (2.0 * step);
-        let bend = |age: f32| (slope(age + step) - slope(age - step)) / (2.0 * step);
-        assert_eq!(fade.at(0.0, frames), fade.value);
-        assert!((slope(0.0) - fade.velocity).length() < 1e-3);
+        let velocity =
+            |age: f32| (offset.at(age + step, frames) - offset.at(age - step, frames)) / (2.0 * step);
+        let acceleration = |age: f32| (velocity(age + step) - velocity(age - step)) / (2.0 * step);
+        assert_eq!(offset.at(0.0, frames), offset.value);
+        assert!((velocity(0.0) - offset.velocity).length() < 1e-3);
         assert!(
-            (bend(0.0) - fade.acceleration).length() < 2e-3,
+            (acceleration(0.0) - offset.acceleration).length() < 2e-3,
             "{}",
-            bend(0.0)
+            acceleration(0.0)
         );
         let end = frames - 2.5 * step;
-        for rest in [fade.at(end, frames), slope(end), bend(end)] {
+        for rest in [offset.at(end, frames), velocity(end), acceleration(end)] {
             assert!(rest.length() < 2e-2, "{rest}");
         }
     }

@@ -1,12 +1,13 @@
-//! A leg: its joints, and what the recordings tell of its knee and sole.
+//! A leg: its joints, and the axis of its knee and the point of its heel as the recordings show them.
 
 use crate::motion::database::Database;
 use crate::motion::roles::Roles;
 use crate::motion::skeleton::Skeleton;
 use glam::{Quat, Vec3};
 
+/// Joints and geometry of a leg.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Leg {
+pub struct LegJoints {
     pub hip: usize,
     pub knee: usize,
     /// The ankle.
@@ -30,7 +31,7 @@ pub fn world(database: &Database, frame: usize) -> (Vec<Vec3>, Vec<Quat>) {
 const LEARNT: usize = 4096;
 
 /// The left leg and the right one.
-pub fn legs(database: &Database) -> [Leg; 2] {
+pub fn legs(database: &Database) -> [LegJoints; 2] {
     let Roles {
         left_hip,
         left_foot,
@@ -51,7 +52,7 @@ pub fn legs(database: &Database) -> [Leg; 2] {
     ]
     .map(|(hip, foot, toe)| {
         let knee = knee(&database.skeleton, hip, foot);
-        Leg {
+        LegJoints {
             hip,
             knee,
             foot,

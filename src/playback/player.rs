@@ -1,10 +1,10 @@
-//! From shown frames to poses.
+//! Poses out of a chain of placed frames.
 
-use super::contact::{Contact, Sole, contacts};
+use super::contact::{FootContact, SolePoints, contacts};
 use super::foot_lock::FootLock;
-use super::leg::{Leg, legs};
-use super::pose::Pose;
-use super::placed_frame::Shown;
+use super::leg::{LegJoints, legs};
+use super::pose::CharacterPose;
+use super::placed_frame::PlacedFrame;
 use super::spring::Spring;
 use super::stitch::{Stitch, Stitching};
 use super::two_bone_ik;
@@ -21,12 +21,13 @@ const RISE: f32 = 0.4;
 /// What all players of one database share.
 #[derive(Debug)]
 pub struct Feet {
-    pub legs: [Leg; 2],
-    /// Of every frame, left foot first.
-    pub contacts: Vec<[Contact; 2]>,
+    pub legs: [LegJoints; 2],
+    /// Contacts of every frame, left foot first.
+    pub contacts: Vec<[FootContact; 2]>,
 }
 
 impl Feet {
+    /// Legs and contacts of all frames of a database.
     pub fn of(database: &Database) -> Feet {
         let legs = legs(database);
         let contacts = contacts(database, &legs);
@@ -34,13 +35,13 @@ impl Feet {
     }
 
     /// Both soles of a pose, left first.
-    pub fn soles(&self, database: &Database, pose: &Pose) -> [Sole; 2] {
+    pub fn soles(&self, database: &Database, pose: &CharacterPose) -> [SolePoints; 2] {
         let (positions, rotations) = pose.world(&database.skeleton);
-        [0, 1].map(|side| Sole::of(&self.legs[side], &positions, &rotations))
+        [0, 1].map(|side| SolePoints::of(&self.legs[side], &positions, &rotations))
     }
 }
 
-/// How the motion is made presentable.
+/// How jumps and sliding feet are hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Style {
     pub stitching: Stitching,
@@ -48,12 +49,14 @@ pub struct Style {
 }
 
 impl Style {
+    /// The recorded poses as they are.
     pub const RAW: Style = Style {
         stitching: Stitching::None,
         foot_locking: false,
     };
+    /// Inertialization and foot locking.
     pub const BEST: Style = Style {
-        stitching: Stitching::Inertialization,
+        stitching: Stitching::Inertialize,
         foot_locking: true,
     };
 }
@@ -64,16 +67,16 @@ pub struct Player {
     database: Arc<Database>,
     feet: Arc<Feet>,
     style: Style,
-    shown: Shown,
+    shown: PlacedFrame,
     stitch: Stitch,
     locks: [FootLock; 2],
-    /// By how much the hips are lower than the motion has them, m.
+    /// Distance by which the hips are lowered, m.
     hips: Spring,
 }
 
 impl Player {
     /// A character that begins after `shown`.
-    pub fn new(database: Arc<Database>, feet: Arc<Feet>, style: Style, shown: Shown) -> Self {
+    pub fn new(database: Arc<Database>, feet: Arc<Feet>, style: Style, shown: PlacedFrame) -> Self {
         let stitch = Stitch::new(style.stitching, database.skeleton.joints());
         Player {
             database,
@@ -87,10 +90,10 @@ impl Player {
     }
 
     /// The pose of the next frame: of the same clip, or of wherever a match has jumped to.
-    pub fn next(&mut self, shown: Shown) -> Pose {
-        self.stitch.pass();
+    pub fn next(&mut self, shown: PlacedFrame) -> CharacterPose {
+        self.stitch.advance();
         if shown.frame != self.shown.frame + 1 {
-            self.stitch.turn(&self.database, self.shown, shown);
+            self.stitch.begin(&self.database, self.shown, shown);
         }
         self.shown = shown;
         let mut pose = shown.pose(&self.database);
@@ -104,28 +107,28 @@ impl Player {
 
     /// Holds the standing feet, and keeps both above the ground; where a leg is too short for that, the
     /// hips come down.
-    fn lock(&mut self, pose: &mut Pose, recorded: &[Sole; 2]) {
+    fn lock(&mut self, pose: &mut CharacterPose, recorded: &[SolePoints; 2]) {
         let skeleton = &self.database.skeleton;
         let (positions, rotations) = pose.world(skeleton);
         let mut targets = [Vec3::ZERO; 2];
-        let mut lack = 0.0_f32;
+        let mut shortfall = 0.0_f32;
         for (side, leg) in self.feet.legs.iter().enumerate() {
-            let sole = Sole::of(leg, &positions, &rotations);
+            let sole = SolePoints::of(leg, &positions, &rotations);
             let contact = self.feet.contacts[self.shown.frame][side];
             let held = self.locks[side].next(&sole, &recorded[side], contact);
             let sunk = -held.y - sole.heel.y.min(sole.toe.y);
             let foot = positions[leg.foot];
             targets[side] = foot + held + Vec3::Y * sunk.max(0.0);
-            if contact != Contact::Air {
+            if contact != FootContact::Air {
                 let length = skeleton.reach(leg.hip, leg.foot);
-                let lacks = two_bone_ik::lack(positions[leg.hip], foot, targets[side], length);
-                lack = lack.max(lacks.unwrap_or(0.0).min(LOWEST));
+                let leg_shortfall = two_bone_ik::shortfall(positions[leg.hip], foot, targets[side], length);
+                shortfall = shortfall.max(leg_shortfall.unwrap_or(0.0).min(LOWEST));
             }
         }
-        let rate = if lack > self.hips.place { DOWN } else { RISE };
-        pose.root.y -= self.hips.follow(lack, rate);
+        let rate = if shortfall > self.hips.position { DOWN } else { RISE };
+        pose.root.y -= self.hips.follow(shortfall, rate);
         for (leg, target) in self.feet.legs.iter().zip(targets) {
-            two_bone_ik::reach(skeleton, pose, leg, target);
+            two_bone_ik::solve(skeleton, pose, leg, target);
         }
     }
 }

@@ -1,8 +1,8 @@
-//! How good motion looks, in numbers.
+//! Motion quality in numbers: foot skate, penetration, jumps, smoothness.
 
-use super::contact::{Contact, Sole};
+use super::contact::{FootContact, SolePoints};
 use super::player::{Feet, Player, Style};
-use super::placed_frame::Shown;
+use super::placed_frame::PlacedFrame;
 use crate::motion::RATE;
 use crate::motion::database::Database;
 use glam::Vec3;
@@ -12,10 +12,10 @@ use std::sync::Arc;
 /// A foot shown so much higher than it was recorded standing is in the air, m.
 const AIR: f32 = 0.02;
 
-/// Of shown frames; "recorded" is what lies between two jumps, before anything was done to it.
+/// Quality of shown frames, or of the recording between two jumps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Quality {
-    /// Share of feet that stand on, from one frame to the next; the skate is theirs. A foot that is
+    /// Fraction of feet that stand on, from one frame to the next; the skate is theirs. A foot that is
     /// lifted to step elsewhere does not stand.
     pub standing: f64,
     /// Ground speed of the bearing point of a standing foot, mean, cm/s.
@@ -23,7 +23,7 @@ pub struct Quality {
     /// Depth of the lowest point of a sole below the ground, mean over all frames and most, cm.
     pub penetration_mean_cm: f64,
     pub penetration_max_cm: f64,
-    /// How far the worst joint of a pose is from where it would be had it moved on steadily, cm.
+    /// Distance of the worst joint of a pose to its position had it moved on steadily, cm.
     pub jump_cm: f64,
     /// Mean over all joints, at jumps, m/s^2 and m/s^3.
     pub acceleration: f64,
@@ -43,46 +43,46 @@ pub struct Comparison {
     pub locked: Quality,
 }
 
-/// Judges walks of one database: chains of shown frames, each beginning with the frame before the
-/// first that counts.
-pub fn compare(database: &Arc<Database>, walks: &[Vec<Shown>]) -> Comparison {
-    use super::stitch::Stitching::{Inertialization, Simple};
+/// Evaluates episodes over one database: chains of placed frames, each beginning with the frame before
+/// the first that counts.
+pub fn compare(database: &Arc<Database>, episodes: &[Vec<PlacedFrame>]) -> Comparison {
+    use super::stitch::Stitching::{Inertialize, Linear};
     let feet = Arc::new(Feet::of(database));
     let style = |stitching, foot_locking| Style {
         stitching,
         foot_locking,
     };
-    let judged = |style: Style, at_jumps: bool| {
+    let evaluated = |style: Style, at_jumps: bool| {
         let mut sums = Sums::default();
-        for walk in walks {
-            sums.add(&film(database, &feet, style, walk), at_jumps);
+        for episode in episodes {
+            sums.add(&play(database, &feet, style, episode), at_jumps);
         }
         sums
     };
-    let raw = judged(Style::RAW, true);
+    let raw = evaluated(Style::RAW, true);
     Comparison {
         frames: raw.frames,
         jumps: raw.jumps,
-        recorded: judged(Style::RAW, false).quality(),
+        recorded: evaluated(Style::RAW, false).quality(),
         raw: raw.quality(),
-        simple: judged(style(Simple, false), true).quality(),
-        stitched: judged(style(Inertialization, false), true).quality(),
-        locked: judged(Style::BEST, true).quality(),
+        simple: evaluated(style(Linear, false), true).quality(),
+        stitched: evaluated(style(Inertialize, false), true).quality(),
+        locked: evaluated(Style::BEST, true).quality(),
     }
 }
 
-/// A shown frame, as it is judged.
+/// What is evaluated of a shown frame.
 struct Frame {
     joints: Vec<Vec3>,
-    soles: [Sole; 2],
-    contacts: [Contact; 2],
+    soles: [SolePoints; 2],
+    contacts: [FootContact; 2],
     /// It does not follow the previous one in the recording.
     jumped: bool,
 }
 
-fn film(database: &Arc<Database>, feet: &Arc<Feet>, style: Style, walk: &[Shown]) -> Vec<Frame> {
-    let mut player = Player::new(database.clone(), feet.clone(), style, walk[0]);
-    walk.windows(2)
+fn play(database: &Arc<Database>, feet: &Arc<Feet>, style: Style, episode: &[PlacedFrame]) -> Vec<Frame> {
+    let mut player = Player::new(database.clone(), feet.clone(), style, episode[0]);
+    episode.windows(2)
         .map(|pair| {
             let pose = player.next(pair[1]);
             let soles = feet.soles(database, &pose);
@@ -92,7 +92,7 @@ fn film(database: &Arc<Database>, feet: &Arc<Feet>, style: Style, walk: &[Shown]
                 let heights = [soles[side], recorded[side]].map(|sole| sole.point(contact));
                 match heights {
                     [Some(shown), Some(recorded)] if shown.y <= recorded.y + AIR => contact,
-                    _ => Contact::Air,
+                    _ => FootContact::Air,
                 }
             });
             Frame {

@@ -1,11 +1,11 @@
-//! Analytic two-joint inverse kinematics: hip and knee turned so that the foot comes to a point.
+//! Analytic two-bone inverse kinematics: hip and knee are rotated so that the foot comes to a point.
 
-use super::leg::Leg;
-use super::pose::Pose;
+use super::leg::LegJoints;
+use super::pose::CharacterPose;
 use crate::motion::skeleton::Skeleton;
 use glam::{Quat, Vec3};
 
-/// From this share of its length on, a leg is stretched ever more slowly, so that the knee does not
+/// From this fraction of its length on, a leg is stretched ever more slowly, so that the knee does not
 /// snap straight.
 const SOFT: f32 = 0.985;
 /// Knees bent less than this (as a sine) take their axis from the leg, not from the pose.
@@ -13,7 +13,7 @@ const STRAIGHT: f32 = 0.2;
 
 /// Brings the ankle to `target` (world, m), or as near as the leg reaches, keeping the foot's rotation
 /// in the world and the direction of the knee.
-pub fn reach(skeleton: &Skeleton, pose: &mut Pose, leg: &Leg, target: Vec3) {
+pub fn solve(skeleton: &Skeleton, pose: &mut CharacterPose, leg: &LegJoints, target: Vec3) {
     if leg.knee == leg.hip {
         return;
     }
@@ -43,17 +43,17 @@ pub fn reach(skeleton: &Skeleton, pose: &mut Pose, leg: &Leg, target: Vec3) {
     rotations[leg.foot] = ((swing * flex * above_foot).inverse() * turned[leg.foot]).normalize();
 }
 
-/// How far the hip has to come down for a leg of that `length` to bring the ankle from `foot` to
-/// `target`, m. None of what is farther away than a leg is long from the point below the hip.
-pub fn lack(hip: Vec3, foot: Vec3, target: Vec3, length: f32) -> Option<f32> {
+/// Distance by which the hip has to come down for a leg of that `length` to bring the ankle from `foot` to
+/// `target`, m. `None` if the target is farther than the leg's length from the point below the hip.
+pub fn shortfall(hip: Vec3, foot: Vec3, target: Vec3, length: f32) -> Option<f32> {
     let reach = (SOFT * length).max(foot.distance(hip));
     let away = (target.x - hip.x).hypot(target.z - hip.z);
     let height = (reach * reach - away * away).max(0.0).sqrt();
     (away < reach).then(|| (hip.y - target.y - height).max(0.0))
 }
 
-/// The hip-to-ankle distance to take: what is wanted, if it is no farther than now or well within
-/// reach.
+/// The hip-to-ankle distance to take: the requested one, if it is no farther than now or well within
+/// the leg's length.
 fn stretch(wanted: f32, now: f32, long: f32, short: f32) -> f32 {
     let (most, least) = (long + short, (long - short).abs());
     let soft = SOFT * most;
@@ -67,14 +67,14 @@ fn stretch(wanted: f32, now: f32, long: f32, short: f32) -> f32 {
 
 /// The axis at right angles to thigh and shank; of a nearly straight leg, the leg's own.
 fn knee_axis(thigh: Vec3, shank: Vec3, own: Vec3) -> Vec3 {
-    let bend = thigh.normalize().cross(shank.normalize());
+    let normal = thigh.normalize().cross(shank.normalize());
     let along = (thigh + shank).normalize_or(thigh);
     let own = own
         .reject_from(along)
         .normalize_or(own.any_orthonormal_vector());
-    let share = (1.0 - bend.length() / STRAIGHT).max(0.0);
+    let weight = (1.0 - normal.length() / STRAIGHT).max(0.0);
     // Weighted, so that nothing jumps where the pose takes over.
-    (bend / STRAIGHT + own * share).normalize_or(own)
+    (normal / STRAIGHT + own * weight).normalize_or(own)
 }
 
 /// The smallest rotation that takes one direction to another.

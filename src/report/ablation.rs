@@ -4,9 +4,9 @@ use std::path::Path;
 
 use plotters::style::RGBColor;
 
-use super::Error;
+use super::ReportError;
 use super::canvas::{Anchor, Canvas, Pixel, paint, text_width};
-use super::chart::{self, Frame, Plot};
+use super::chart::{self, PlotArea, Plot};
 use super::learning_curve::{self, PANELS, Panel, Point};
 
 /// One way to train, tried with several seeds.
@@ -49,7 +49,7 @@ const FEW: usize = 3;
 /// # Errors
 ///
 /// If the picture cannot be drawn or written.
-pub fn draw(path: &Path, methods: &[Method]) -> Result<(), Error> {
+pub fn draw(path: &Path, methods: &[Method]) -> Result<(), ReportError> {
     let steps = methods
         .iter()
         .flat_map(|method| method.seeds.iter().flatten());
@@ -183,7 +183,7 @@ fn plot(panel: &Panel, curves: &[Curve], end: f64, (left, top): Pixel) -> Plot {
         .limits
         .or_else(|| chart::extent(values).map(learning_curve::roomy));
     Plot {
-        frame: Frame {
+        frame: PlotArea {
             left,
             top,
             right: left + PLOT,
@@ -195,7 +195,7 @@ fn plot(panel: &Panel, curves: &[Curve], end: f64, (left, top): Pixel) -> Plot {
 }
 
 /// All bands below all lines.
-fn draw_panel(canvas: &mut Canvas<'_>, plot: &Plot, curves: &[Curve]) -> Result<(), Error> {
+fn draw_panel(canvas: &mut Canvas<'_>, plot: &Plot, curves: &[Curve]) -> Result<(), ReportError> {
     plot.draw_grid(canvas)?;
     plot.label_x(canvas)?;
     plot.label_y(canvas)?;
@@ -211,7 +211,7 @@ fn draw_panel(canvas: &mut Canvas<'_>, plot: &Plot, curves: &[Curve]) -> Result<
     Ok(())
 }
 
-fn draw_band(canvas: &mut Canvas<'_>, plot: &Plot, curve: &Curve) -> Result<(), Error> {
+fn draw_band(canvas: &mut Canvas<'_>, plot: &Plot, curve: &Curve) -> Result<(), ReportError> {
     let whole = || curve.spots.iter().filter(|spot| spot.whole);
     let above = whole().map(|spot| place(plot, spot.steps, spot.high));
     let below = whole().rev().map(|spot| place(plot, spot.steps, spot.low));
@@ -220,7 +220,7 @@ fn draw_band(canvas: &mut Canvas<'_>, plot: &Plot, curve: &Curve) -> Result<(), 
 }
 
 /// The line is thin where seeds are missing.
-fn draw_mean(canvas: &mut Canvas<'_>, plot: &Plot, curve: &Curve) -> Result<(), Error> {
+fn draw_mean(canvas: &mut Canvas<'_>, plot: &Plot, curve: &Curve) -> Result<(), ReportError> {
     let at = |spot: &Spot| place(plot, spot.steps, spot.mean);
     for ends in curve.spots.windows(2) {
         let whole = ends.iter().all(|spot| spot.whole);
@@ -288,15 +288,15 @@ fn names(methods: &[Method], panels: &[Vec<Curve>]) -> Vec<Name> {
 }
 
 /// Left end and row of each name.
-fn place_names(names: &[Name]) -> Result<Vec<(f64, usize)>, Error> {
+fn place_names(names: &[Name]) -> Result<Vec<(f64, usize)>, ReportError> {
     let width = |name: &Name| Ok(SWATCH + text_width(&name.text, chart::NORMAL)?);
-    let widths: Vec<f64> = names.iter().map(width).collect::<Result<_, Error>>()?;
+    let widths: Vec<f64> = names.iter().map(width).collect::<Result<_, ReportError>>()?;
     Ok(chart::flow(&widths, LEGEND_GAP, WIDTH - LEFT - RIGHT))
 }
 
 impl Name {
     /// From the left end at half height.
-    fn draw(&self, canvas: &mut Canvas<'_>, (left, y): Pixel) -> Result<(), Error> {
+    fn draw(&self, canvas: &mut Canvas<'_>, (left, y): Pixel) -> Result<(), ReportError> {
         let right = left + SWATCH - 14.0;
         let (corner, opposite) = ((left, y - 10.0), (right, y + 10.0));
         canvas.rectangle(corner, opposite, chart::tint(self.line, 0.22))?;

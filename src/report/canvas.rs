@@ -9,7 +9,7 @@ use std::path::Path;
 use plotters::backend::{BitMapBackend, DrawingBackend};
 use plotters::style::{Color, RGBColor, ShapeStyle};
 
-use super::{Error, font, png_file};
+use super::{ReportError, font, png_file};
 
 /// How many times larger than the finished picture the drawing is, along each side.
 const FINE: u32 = 3;
@@ -43,8 +43,8 @@ pub fn paint(
     path: &Path,
     width: u32,
     height: u32,
-    draw: impl FnOnce(&mut Canvas<'_>) -> Result<(), Error>,
-) -> Result<(), Error> {
+    draw: impl FnOnce(&mut Canvas<'_>) -> Result<(), ReportError>,
+) -> Result<(), ReportError> {
     let size = (width * FINE, height * FINE);
     let mut rgb = vec![255; size.0 as usize * size.1 as usize * 3];
     draw(&mut Canvas {
@@ -56,7 +56,7 @@ pub fn paint(
 
 impl Canvas<'_> {
     /// A line through `points` with round joints.
-    pub fn line(&mut self, points: &[Pixel], colour: RGBColor, width: f64) -> Result<(), Error> {
+    pub fn line(&mut self, points: &[Pixel], colour: RGBColor, width: f64) -> Result<(), ReportError> {
         let pen = pen(colour, 1.0, width);
         // One piece at a time: a whole path is filled by the even-odd rule, which tears
         // holes wherever a noisy line crosses itself.
@@ -78,7 +78,7 @@ impl Canvas<'_> {
         to: Pixel,
         colour: RGBColor,
         width: f64,
-    ) -> Result<(), Error> {
+    ) -> Result<(), ReportError> {
         const DASH: f64 = 9.0;
         const PERIOD: f64 = 15.0;
         let length = (to.0 - from.0).hypot(to.1 - from.1);
@@ -103,7 +103,7 @@ impl Canvas<'_> {
         radius: f64,
         colour: RGBColor,
         opacity: f64,
-    ) -> Result<(), Error> {
+    ) -> Result<(), ReportError> {
         let pen = pen(colour, opacity, 1.0);
         let radius = fine(radius) as u32;
         drawn(self.backend.draw_circle(grid(centre), radius, &pen, true))
@@ -115,7 +115,7 @@ impl Canvas<'_> {
         corner: Pixel,
         opposite: Pixel,
         colour: RGBColor,
-    ) -> Result<(), Error> {
+    ) -> Result<(), ReportError> {
         let (corner, opposite) = (grid(corner), grid(opposite));
         let pen = pen(colour, 1.0, 1.0);
         drawn(self.backend.draw_rect(corner, opposite, &pen, true))
@@ -127,7 +127,7 @@ impl Canvas<'_> {
         corners: &[Pixel],
         colour: RGBColor,
         opacity: f64,
-    ) -> Result<(), Error> {
+    ) -> Result<(), ReportError> {
         let corners: Vec<(i32, i32)> = corners.iter().map(|&corner| grid(corner)).collect();
         let heights = || corners.iter().map(|corner| corner.1);
         let top = heights().min().unwrap_or(0).max(0);
@@ -151,7 +151,7 @@ impl Canvas<'_> {
         anchor: Anchor,
         size: f64,
         colour: RGBColor,
-    ) -> Result<(), Error> {
+    ) -> Result<(), ReportError> {
         let line = font::line(text, fine(size) as f32)?;
         self.letters(&line, at, anchor, colour, |right, down| (right, down))
     }
@@ -163,7 +163,7 @@ impl Canvas<'_> {
         at: Pixel,
         size: f64,
         colour: RGBColor,
-    ) -> Result<(), Error> {
+    ) -> Result<(), ReportError> {
         let line = font::line(text, fine(size) as f32)?;
         self.letters(&line, at, Anchor::Centre, colour, |right, down| {
             (down, -right)
@@ -177,7 +177,7 @@ impl Canvas<'_> {
         anchor: Anchor,
         colour: RGBColor,
         turn: fn(i32, i32) -> (i32, i32),
-    ) -> Result<(), Error> {
+    ) -> Result<(), ReportError> {
         let at = grid(at);
         let back = match anchor {
             Anchor::Left => 0.0,
@@ -203,7 +203,7 @@ impl Canvas<'_> {
 }
 
 /// How wide a line of text is, in pixels.
-pub fn text_width(text: &str, size: f64) -> Result<f64, Error> {
+pub fn text_width(text: &str, size: f64) -> Result<f64, ReportError> {
     let line = font::line(text, fine(size) as f32)?;
     Ok(f64::from(line.width) / f64::from(FINE))
 }
@@ -245,8 +245,8 @@ fn grid(point: Pixel) -> (i32, i32) {
     (fine(point.0), fine(point.1))
 }
 
-fn drawn<T, E: std::fmt::Display>(result: Result<T, E>) -> Result<T, Error> {
-    result.map_err(|error| Error::Draw(error.to_string()))
+fn drawn<T, E: std::fmt::Display>(result: Result<T, E>) -> Result<T, ReportError> {
+    result.map_err(|error| ReportError::Draw(error.to_string()))
 }
 
 /// Averages every `FINE` by `FINE` block into one pixel of a `width` by `height` picture.

@@ -2,7 +2,7 @@
 
 use plotters::style::RGBColor;
 
-use super::Error;
+use super::ReportError;
 use super::canvas::{Anchor, Canvas, Pixel};
 
 /// Titles and axis labels.
@@ -81,7 +81,7 @@ impl Axis {
 
 /// A rectangle of the picture, in pixels.
 #[derive(Clone, Copy)]
-pub struct Frame {
+pub struct PlotArea {
     pub left: f64,
     pub top: f64,
     pub right: f64,
@@ -90,7 +90,7 @@ pub struct Frame {
 
 /// A rectangle with two axes.
 pub struct Plot {
-    pub frame: Frame,
+    pub frame: PlotArea,
     pub x: Axis,
     pub y: Axis,
 }
@@ -98,7 +98,7 @@ pub struct Plot {
 impl Plot {
     /// Where a pair of values lies in the picture.
     pub fn at(&self, x: f64, y: f64) -> Pixel {
-        let Frame {
+        let PlotArea {
             left,
             top,
             right,
@@ -116,8 +116,8 @@ impl Plot {
     }
 
     /// The grid and the two axis lines: to be drawn before the data.
-    pub fn draw_grid(&self, canvas: &mut Canvas<'_>) -> Result<(), Error> {
-        let Frame {
+    pub fn draw_grid(&self, canvas: &mut Canvas<'_>) -> Result<(), ReportError> {
+        let PlotArea {
             left,
             top,
             right,
@@ -135,8 +135,8 @@ impl Plot {
     }
 
     /// The numbers and the label below the plot.
-    pub fn label_x(&self, canvas: &mut Canvas<'_>) -> Result<(), Error> {
-        let Frame {
+    pub fn label_x(&self, canvas: &mut Canvas<'_>) -> Result<(), ReportError> {
+        let PlotArea {
             left,
             right,
             bottom,
@@ -153,8 +153,8 @@ impl Plot {
     }
 
     /// The numbers and the label to the left of the plot.
-    pub fn label_y(&self, canvas: &mut Canvas<'_>) -> Result<(), Error> {
-        let Frame {
+    pub fn label_y(&self, canvas: &mut Canvas<'_>) -> Result<(), ReportError> {
+        let PlotArea {
             left, top, bottom, ..
         } = self.frame;
         for &tick in &self.y.ticks {
@@ -167,7 +167,7 @@ impl Plot {
     }
 
     /// A remark in the middle, for a plot that has nothing to show.
-    pub fn remark(&self, canvas: &mut Canvas<'_>, text: &str) -> Result<(), Error> {
+    pub fn remark(&self, canvas: &mut Canvas<'_>, text: &str) -> Result<(), ReportError> {
         let middle = (
             (self.frame.left + self.frame.right) / 2.0,
             (self.frame.top + self.frame.bottom) / 2.0,

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use plotters::style::RGBColor;
 
-use super::Error;
+use super::ReportError;
 use super::canvas::{Anchor, Canvas, paint};
-use super::chart::{self, Axis, Frame, Plot};
+use super::chart::{self, Axis, PlotArea, Plot};
 
 /// One value for each frame. Frames with a value that is not finite are left out.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +55,7 @@ const COLOURS: [RGBColor; 9] = [
 /// # Errors
 ///
 /// If the picture cannot be drawn or written.
-pub fn draw(path: &Path, samples: &Samples<'_>) -> Result<(), Error> {
+pub fn draw(path: &Path, samples: &Samples<'_>) -> Result<(), ReportError> {
     let minutes = 1.0 / (60.0 * f64::from(samples.rate_hz));
     let turns: Vec<(f64, f64)> = pairs(samples.speed.iter().zip(samples.turning));
     let moves: Vec<(f64, f64)> = pairs(samples.velocity.iter().map(|[side, ahead]| (side, ahead)));
@@ -116,9 +116,9 @@ fn velocity_plot(moves: &[(f64, f64)]) -> Plot {
     }
 }
 
-fn frame(column: usize) -> Frame {
+fn frame(column: usize) -> PlotArea {
     let left = LEFT + column as f64 * (SIDE + GAP);
-    Frame {
+    PlotArea {
         left,
         top: TOP,
         right: left + SIDE,
@@ -165,11 +165,11 @@ fn draw_density(
     plot: &Plot,
     density: &Density,
     scale: Option<&Scale>,
-) -> Result<(), Error> {
+) -> Result<(), ReportError> {
     let Some(scale) = scale.filter(|_| density.max() > 0.0) else {
         return plot.remark(canvas, "no frames");
     };
-    let Frame { left, bottom, .. } = plot.frame;
+    let PlotArea { left, bottom, .. } = plot.frame;
     let size = SIDE / CELLS as f64;
     for (index, &minutes) in density.minutes.iter().enumerate() {
         if minutes > 0.0 {
@@ -205,7 +205,7 @@ impl Scale {
         shade(self.part(minutes))
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>) -> Result<(), Error> {
+    fn draw(&self, canvas: &mut Canvas<'_>) -> Result<(), ReportError> {
         let left = WIDTH - RIGHT + 40.0;
         let right = left + 26.0;
         let (top, bottom) = (TOP, TOP + SIDE);

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use ab_glyph::{Font, FontRef, Glyph, OutlinedGlyph, PxScale, ScaleFont, point};
 
-use super::Error;
+use super::ReportError;
 
 /// One line of text as shapes: the origin lies at the left end, at half the height of
 /// a capital letter, with y downwards.
@@ -22,7 +22,7 @@ pub struct Line {
 /// # Errors
 ///
 /// If the embedded font cannot be read.
-pub fn line(text: &str, size: f32) -> Result<Line, Error> {
+pub fn line(text: &str, size: f32) -> Result<Line, ReportError> {
     let font = face()?.as_scaled(size);
     let baseline = font
         .outline_glyph(font.scaled_glyph('H'))
@@ -44,9 +44,9 @@ pub fn line(text: &str, size: f32) -> Result<Line, Error> {
 }
 
 /// The font, read once.
-fn face() -> Result<&'static FontRef<'static>, Error> {
+fn face() -> Result<&'static FontRef<'static>, ReportError> {
     static FACE: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
     FACE.get_or_init(|| FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).ok())
         .as_ref()
-        .ok_or_else(|| Error::Draw("the embedded font is not readable".to_owned()))
+        .ok_or_else(|| ReportError::Draw("the embedded font is not readable".to_owned()))
 }

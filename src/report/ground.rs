@@ -3,15 +3,15 @@
 
 use plotters::style::RGBColor;
 
-use super::Error;
+use super::ReportError;
 use super::canvas::{Canvas, Pixel};
-use super::chart::{self, Axis, Frame, Plot};
+use super::chart::{self, Axis, PlotArea, Plot};
 
 /// Distance from the target at which it counts as reached, in metres.
 pub const TARGET_RADIUS: f64 = 0.5;
 
 /// The square of ground within `half` metres of `centre`, which is (x, z).
-pub fn plot(frame: Frame, centre: (f64, f64), half: f64) -> Plot {
+pub fn plot(frame: PlotArea, centre: (f64, f64), half: f64) -> Plot {
     let axis = |label, centre| Axis::new(label, (centre - half, centre + half), 7);
     // A plot grows upwards, but z grows downwards: the plot's y is -z.
     let mut z = axis("z (m)", -centre.1);
@@ -44,7 +44,7 @@ pub fn finite(point: &[f32; 2]) -> bool {
 }
 
 /// Whether a pixel lies within the frame.
-pub fn inside(frame: &Frame, (x, y): Pixel) -> bool {
+pub fn inside(frame: &PlotArea, (x, y): Pixel) -> bool {
     (frame.left..=frame.right).contains(&x) && (frame.top..=frame.bottom).contains(&y)
 }
 
@@ -52,11 +52,11 @@ pub fn inside(frame: &Frame, (x, y): Pixel) -> bool {
 /// finite.
 pub fn line(
     canvas: &mut Canvas<'_>,
-    frame: &Frame,
+    frame: &PlotArea,
     points: &[Pixel],
     colour: RGBColor,
     width: f64,
-) -> Result<(), Error> {
+) -> Result<(), ReportError> {
     let mut piece: Vec<Pixel> = Vec::new();
     for ends in points.windows(2) {
         let Some([from, to]) = cut(frame, ends[0], ends[1]) else {
@@ -72,7 +72,7 @@ pub fn line(
 }
 
 /// The part of a straight line that lies within the frame.
-fn cut(frame: &Frame, from: Pixel, to: Pixel) -> Option<[Pixel; 2]> {
+fn cut(frame: &PlotArea, from: Pixel, to: Pixel) -> Option<[Pixel; 2]> {
     let (x, y) = (to.0 - from.0, to.1 - from.1);
     let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
     for (start, length, min, max) in [
@@ -98,7 +98,7 @@ pub fn target(
     centre: Pixel,
     colour: RGBColor,
     reached: bool,
-) -> Result<(), Error> {
+) -> Result<(), ReportError> {
     let radius = target_radius(plot);
     canvas.disc(centre, radius, colour, 0.14)?;
     circle(canvas, centre, radius, colour, reached)
@@ -111,7 +111,7 @@ pub fn circle(
     radius: f64,
     colour: RGBColor,
     whole: bool,
-) -> Result<(), Error> {
+) -> Result<(), ReportError> {
     const CORNERS: u32 = 48;
     let corner = |index: u32| {
         let angle = f64::from(index) * std::f64::consts::TAU / f64::from(CORNERS);
@@ -127,18 +127,18 @@ pub fn circle(
 }
 
 /// Where a walk began.
-pub fn start(canvas: &mut Canvas<'_>, at: Pixel) -> Result<(), Error> {
+pub fn start(canvas: &mut Canvas<'_>, at: Pixel) -> Result<(), ReportError> {
     ring(canvas, at, chart::INK)
 }
 
 /// A small ring with a white middle.
-pub fn ring(canvas: &mut Canvas<'_>, at: Pixel, colour: RGBColor) -> Result<(), Error> {
+pub fn ring(canvas: &mut Canvas<'_>, at: Pixel, colour: RGBColor) -> Result<(), ReportError> {
     canvas.disc(at, 8.0, colour, 1.0)?;
     canvas.disc(at, 4.5, chart::tint(colour, 0.0), 1.0)
 }
 
 /// A small cross.
-pub fn cross(canvas: &mut Canvas<'_>, (x, y): Pixel, colour: RGBColor) -> Result<(), Error> {
+pub fn cross(canvas: &mut Canvas<'_>, (x, y): Pixel, colour: RGBColor) -> Result<(), ReportError> {
     const ARM: f64 = 6.5;
     canvas.line(&[(x - ARM, y - ARM), (x + ARM, y + ARM)], colour, 3.0)?;
     canvas.line(&[(x - ARM, y + ARM), (x + ARM, y - ARM)], colour, 3.0)

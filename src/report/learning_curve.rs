@@ -5,9 +5,9 @@ use std::path::Path;
 
 use plotters::style::RGBColor;
 
-use super::Error;
+use super::ReportError;
 use super::canvas::{Anchor, Canvas, Pixel, paint, text_width};
-use super::chart::{self, Axis, Frame, Plot};
+use super::chart::{self, Axis, PlotArea, Plot};
 
 mod levels;
 
@@ -101,7 +101,7 @@ pub(super) const PANELS: [Panel; 3] = [
 /// # Errors
 ///
 /// If the picture cannot be drawn or written.
-pub fn draw(path: &Path, points: &[Point], marks: &[Mark], levels: &[Level]) -> Result<(), Error> {
+pub fn draw(path: &Path, points: &[Point], marks: &[Mark], levels: &[Level]) -> Result<(), ReportError> {
     let end = rounded_end(points.iter().map(|point| point.steps));
     let numbers = levels::place_numbers(levels, end)?;
     let labels = place_labels(marks, end, usize::from(!numbers.is_empty()))?;
@@ -145,7 +145,7 @@ fn plot(panel: &Panel, points: &[Point], end: f64, top: f64) -> Plot {
         chart::extent(points.iter().filter_map(panel.value)).map_or((0.0, 1.0), roomy)
     });
     Plot {
-        frame: Frame {
+        frame: PlotArea {
             left: LEFT,
             top,
             right: WIDTH - RIGHT,
@@ -186,7 +186,7 @@ fn draw_panel(
     plot: &Plot,
     points: &[Point],
     marks: &[Mark],
-) -> Result<(), Error> {
+) -> Result<(), ReportError> {
     let raw = panel.values(points);
     let smooth = smoothed(&raw, plot.x.max);
     let place = |&(x, y): &(f64, f64)| plot.at(x, y.clamp(plot.y.min, plot.y.max));
@@ -234,7 +234,7 @@ pub(super) fn smoothed(values: &[(f64, f64)], end: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-fn draw_marks(canvas: &mut Canvas<'_>, plot: &Plot, marks: &[Mark]) -> Result<(), Error> {
+fn draw_marks(canvas: &mut Canvas<'_>, plot: &Plot, marks: &[Mark]) -> Result<(), ReportError> {
     for mark in marks {
         if mark.steps as f64 <= plot.x.max {
             let (x, _) = plot.at(mark.steps as f64, plot.y.min);
@@ -256,7 +256,7 @@ struct Label<'a> {
 
 /// Puts each label above its line, in the lowest row from `first` on in which it is clear
 /// of the labels before it; a label that finds no room is left out.
-fn place_labels(marks: &[Mark], end: f64, first: usize) -> Result<Vec<Label<'_>>, Error> {
+fn place_labels(marks: &[Mark], end: f64, first: usize) -> Result<Vec<Label<'_>>, ReportError> {
     let mut sorted: Vec<&Mark> = marks
         .iter()
         .filter(|mark| !mark.label.is_empty() && mark.steps as f64 <= end)
@@ -279,7 +279,7 @@ fn place_labels(marks: &[Mark], end: f64, first: usize) -> Result<Vec<Label<'_>>
 }
 
 /// A second axis below the steps: the training time at which they were reached.
-fn draw_time(canvas: &mut Canvas<'_>, plot: &Plot, points: &[Point]) -> Result<(), Error> {
+fn draw_time(canvas: &mut Canvas<'_>, plot: &Plot, points: &[Point]) -> Result<(), ReportError> {
     let mut clock: Vec<(f64, f64)> = vec![(0.0, 0.0)];
     for point in points {
         let (steps, time) = clock.last().copied().unwrap_or_default();
@@ -291,7 +291,7 @@ fn draw_time(canvas: &mut Canvas<'_>, plot: &Plot, points: &[Point]) -> Result<(
         return Ok(());
     }
     let interval = interval(clock.last().map_or(0.0, |last| last.1));
-    let Frame {
+    let PlotArea {
         left,
         right,
         bottom,

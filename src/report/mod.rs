@@ -24,7 +24,7 @@ pub mod trajectories;
 
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum ReportError {
     /// The drawing itself failed, before any file was touched.
     #[error("cannot draw the picture: {0}")]
     Draw(String),

@@ -3,9 +3,9 @@
 
 use plotters::style::RGBColor;
 
-use super::Error;
+use super::ReportError;
 use super::canvas::{Anchor, Canvas, Pixel, paint};
-use super::chart::{self, Frame, Plot};
+use super::chart::{self, PlotArea, Plot};
 use super::ground;
 
 mod legend;
@@ -94,7 +94,7 @@ const SEEN: RGBColor = chart::PALETTE[3];
 /// # Errors
 ///
 /// If the picture cannot be drawn or written.
-pub fn draw(path: &std::path::Path, episodes: &[Episode], step_s: f32) -> Result<(), Error> {
+pub fn draw(path: &std::path::Path, episodes: &[Episode], step_s: f32) -> Result<(), ReportError> {
     let columns = episodes.len().clamp(1, COLUMNS);
     let rows = episodes.len().div_ceil(COLUMNS).max(1);
     let width = LEFT + columns as f64 * (EPISODE + GAP) - GAP + RIGHT;
@@ -116,7 +116,7 @@ pub fn draw(path: &std::path::Path, episodes: &[Episode], step_s: f32) -> Result
 }
 
 fn plot(left: f64, top: f64) -> Plot {
-    let frame = Frame {
+    let frame = PlotArea {
         left,
         top,
         right: left + SIDE,
@@ -130,7 +130,7 @@ fn draw_episode(
     episode: &Episode,
     step_s: f32,
     (left, top): Pixel,
-) -> Result<(), Error> {
+) -> Result<(), ReportError> {
     let plot = plot(left, top);
     plot.draw_grid(canvas)?;
     let scene = Scene {
@@ -181,12 +181,12 @@ impl Scene<'_> {
         line: &[Pixel],
         colour: RGBColor,
         width: f64,
-    ) -> Result<(), Error> {
+    ) -> Result<(), ReportError> {
         ground::line(canvas, &self.plot.frame, line, colour, width)
     }
 
     /// All boxes below all their ways.
-    fn draw_obstacles(&self, canvas: &mut Canvas<'_>, episode: &Episode) -> Result<(), Error> {
+    fn draw_obstacles(&self, canvas: &mut Canvas<'_>, episode: &Episode) -> Result<(), ReportError> {
         for obstacle in &episode.obstacles {
             self.draw_box(canvas, obstacle, OBSTACLE)?;
         }
@@ -209,9 +209,9 @@ impl Scene<'_> {
         canvas: &mut Canvas<'_>,
         obstacle: &Obstacle,
         colour: RGBColor,
-    ) -> Result<(), Error> {
+    ) -> Result<(), ReportError> {
         let [[x, z], [half_x, half_z]] = [obstacle.end, obstacle.half.map(f32::abs)];
-        let Frame {
+        let PlotArea {
             left,
             top,
             right,
@@ -226,7 +226,7 @@ impl Scene<'_> {
         Ok(())
     }
 
-    fn draw_target(&self, canvas: &mut Canvas<'_>, episode: &Episode) -> Result<(), Error> {
+    fn draw_target(&self, canvas: &mut Canvas<'_>, episode: &Episode) -> Result<(), ReportError> {
         let centre = self.place(episode.target);
         if !self.inside(centre) {
             return Ok(());
@@ -236,7 +236,7 @@ impl Scene<'_> {
     }
 
     /// The outline of the ground that the maps cover.
-    fn draw_covered(&self, canvas: &mut Canvas<'_>, episode: &Episode) -> Result<(), Error> {
+    fn draw_covered(&self, canvas: &mut Canvas<'_>, episode: &Episode) -> Result<(), ReportError> {
         let Some(&seen) = episode.points.get(episode.seen) else {
             return Ok(());
         };
@@ -254,7 +254,7 @@ impl Scene<'_> {
         canvas: &mut Canvas<'_>,
         episode: &Episode,
         step_s: f32,
-    ) -> Result<(), Error> {
+    ) -> Result<(), ReportError> {
         let line: Vec<Pixel> = episode.points.iter().map(|&at| self.place(at)).collect();
         self.line(canvas, &line, self.colour, 3.0)?;
         let visible = |at: &&Pixel| self.inside(**at);
@@ -314,7 +314,7 @@ fn draw_rectangle(
     corner: Pixel,
     opposite: Pixel,
     colour: RGBColor,
-) -> Result<(), Error> {
+) -> Result<(), ReportError> {
     canvas.rectangle(corner, opposite, chart::tint(colour, 0.2))?;
     draw_outline(canvas, corner, opposite, chart::tint(colour, 0.6), 1.2)
 }
@@ -325,14 +325,14 @@ fn draw_outline(
     opposite: Pixel,
     colour: RGBColor,
     width: f64,
-) -> Result<(), Error> {
+) -> Result<(), ReportError> {
     let others = [(opposite.0, corner.1), (corner.0, opposite.1)];
     let line = [corner, others[0], opposite, others[1], corner];
     canvas.line(&line, colour, width)
 }
 
 /// The character, seen from above.
-fn draw_arrow(canvas: &mut Canvas<'_>, at: Pixel, forward: Pixel) -> Result<(), Error> {
+fn draw_arrow(canvas: &mut Canvas<'_>, at: Pixel, forward: Pixel) -> Result<(), ReportError> {
     let corner = |ahead, right| turned(at, forward, ahead, right);
     let arrow = [
         corner(14.0, 0.0),
@@ -345,7 +345,7 @@ fn draw_arrow(canvas: &mut Canvas<'_>, at: Pixel, forward: Pixel) -> Result<(), 
     canvas.polygon(&arrow, SEEN, 1.0)
 }
 
-fn draw_end(canvas: &mut Canvas<'_>, at: Pixel, end: End) -> Result<(), Error> {
+fn draw_end(canvas: &mut Canvas<'_>, at: Pixel, end: End) -> Result<(), ReportError> {
     match end {
         End::Reached => canvas.disc(at, 8.0, colour(end), 1.0),
         End::Collided => ground::cross(canvas, at, colour(end)),
@@ -359,8 +359,8 @@ fn draw_heading(
     plot: &Plot,
     episode: &Episode,
     step_s: f32,
-) -> Result<(), Error> {
-    let Frame { left, top, .. } = plot.frame;
+) -> Result<(), ReportError> {
+    let PlotArea { left, top, .. } = plot.frame;
     let at = (left, top - 66.0);
     canvas.text(&episode.title, at, Anchor::Left, chart::LARGE, chart::INK)?;
     let words = match episode.end {

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::Error;
+use super::ReportError;
 use super::canvas::{Anchor, Canvas, paint, text_width};
-use super::chart::{self, Axis, Frame, Plot};
+use super::chart::{self, Axis, PlotArea, Plot};
 
 /// One plot.
-pub struct Panel {
+pub struct ScalingPanel {
     pub title: String,
     /// What grows, and what is measured, with its unit.
     pub x: &'static str,
@@ -40,7 +40,7 @@ const BOTTOM: f64 = 88.0;
 /// # Errors
 ///
 /// If the picture cannot be drawn or written.
-pub fn draw(path: &Path, panels: &[Panel]) -> Result<(), Error> {
+pub fn draw(path: &Path, panels: &[ScalingPanel]) -> Result<(), ReportError> {
     let mut names: Vec<&str> = Vec::new();
     for curve in panels.iter().flat_map(|panel| &panel.curves) {
         if !names.contains(&curve.name.as_str()) {
@@ -51,7 +51,7 @@ pub fn draw(path: &Path, panels: &[Panel]) -> Result<(), Error> {
     let widths = names
         .iter()
         .map(|name| Ok(SWATCH + text_width(name, chart::NORMAL)?))
-        .collect::<Result<Vec<_>, Error>>()?;
+        .collect::<Result<Vec<_>, ReportError>>()?;
     let places = chart::flow(&widths, LEGEND_GAP, width - LEFT - RIGHT);
     let rows = places.last().map_or(0, |&(_, row)| row + 1);
     let top = TOP + rows as f64 * LEGEND_ROW + TITLE;
@@ -71,11 +71,11 @@ pub fn draw(path: &Path, panels: &[Panel]) -> Result<(), Error> {
     })
 }
 
-impl Panel {
-    fn draw(&self, canvas: &mut Canvas<'_>, at: (f64, f64), names: &[&str]) -> Result<(), Error> {
+impl ScalingPanel {
+    fn draw(&self, canvas: &mut Canvas<'_>, at: (f64, f64), names: &[&str]) -> Result<(), ReportError> {
         let points = || self.curves.iter().flat_map(|curve| &curve.points);
         let plot = Plot {
-            frame: Frame {
+            frame: PlotArea {
                 left: at.0,
                 top: at.1,
                 right: at.0 + PLOT,

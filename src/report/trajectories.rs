@@ -1,9 +1,9 @@
 //! Paths to their targets, seen from above: one panel for each stage of a training, as
 //! in the paper's figure 4 (c).
 
-use super::Error;
+use super::ReportError;
 use super::canvas::{Anchor, Canvas, Pixel, paint, text_width};
-use super::chart::{self, Frame, Plot};
+use super::chart::{self, PlotArea, Plot};
 use super::ground;
 
 /// One walk to one target.
@@ -46,7 +46,7 @@ const BOTTOM: f64 = 76.0;
 /// # Errors
 ///
 /// If the picture cannot be drawn or written.
-pub fn draw(path: &std::path::Path, groups: &[Group]) -> Result<(), Error> {
+pub fn draw(path: &std::path::Path, groups: &[Group]) -> Result<(), ReportError> {
     let columns = groups.len().clamp(1, COLUMNS);
     let rows = groups.len().div_ceil(COLUMNS).max(1);
     let width = LEFT + columns as f64 * (SIDE + GAP) - GAP + RIGHT;
@@ -103,7 +103,7 @@ impl Square {
     }
 
     fn plot(&self, left: f64, top: f64) -> Plot {
-        let frame = Frame {
+        let frame = PlotArea {
             left,
             top,
             right: left + SIDE,
@@ -122,7 +122,7 @@ impl Square {
     }
 }
 
-fn draw_group(canvas: &mut Canvas<'_>, plot: &Plot, group: &Group) -> Result<(), Error> {
+fn draw_group(canvas: &mut Canvas<'_>, plot: &Plot, group: &Group) -> Result<(), ReportError> {
     let middle = (plot.frame.left + plot.frame.right) / 2.0;
     let at = (middle, plot.frame.top - 24.0);
     canvas.text(&group.title, at, Anchor::Centre, chart::LARGE, chart::INK)?;
@@ -143,7 +143,7 @@ fn draw_group(canvas: &mut Canvas<'_>, plot: &Plot, group: &Group) -> Result<(),
     Ok(())
 }
 
-fn draw_target(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
+fn draw_target(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), ReportError> {
     if !ground::finite(&path.target) {
         return Ok(());
     }
@@ -152,7 +152,7 @@ fn draw_target(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), 
     ground::target(canvas, plot, centre, colour, path.reached)
 }
 
-fn draw_path(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
+fn draw_path(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), ReportError> {
     let colour = chart::colour(path.colour);
     let line = walked(plot, path);
     ground::line(canvas, &plot.frame, &line, colour, 3.0)?;
@@ -164,7 +164,7 @@ fn draw_path(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Er
     }
 }
 
-fn draw_start(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
+fn draw_start(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), ReportError> {
     match walked(plot, path).first() {
         Some(&start) => ground::start(canvas, start),
         None => Ok(()),
@@ -172,7 +172,7 @@ fn draw_start(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), E
 }
 
 /// Writes the label on the far side of the target, where the path does not run.
-fn draw_label(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), Error> {
+fn draw_label(canvas: &mut Canvas<'_>, plot: &Plot, path: &Path) -> Result<(), ReportError> {
     let start = path.points.iter().find(|point| ground::finite(point));
     if !ground::finite(&path.target) || path.label.is_empty() {
         return Ok(());

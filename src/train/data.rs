@@ -1,18 +1,23 @@
-//! Where a run's database comes from.
+//! The motion of a run: a database file, recordings, or the synthetic performer's.
 
+use crate::container::StoreError;
+use crate::matching::MotionMatcher;
 use crate::motion::database::Database;
 use crate::motion::import::{ImportOptions, import};
 use crate::motion::normalise::Weights;
 use crate::motion::synthetic;
-use crate::container::StoreError;
 use anyhow::{Result, bail};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Seed of the embedded synthetic data: the same for every run.
 pub const SYNTHETIC_SEED: u64 = 1;
 
-/// A database file, a BVH file or a folder of them; without a path the synthetic performer's
+/// Loads a database file, a BVH file or a folder of them; without a path the synthetic performer's
 /// motion. The notes say what the user should know of an import.
+///
+/// # Errors
+/// The data is missing, damaged or something else, or no clip is long enough to be matched.
 pub fn load(path: Option<&Path>, weights: Weights) -> Result<(Database, Vec<String>)> {
     let Some(path) = path else {
         let (clips, roles) = synthetic::perform(SYNTHETIC_SEED, synthetic::MINUTES);
@@ -35,7 +40,25 @@ pub fn load(path: Option<&Path>, weights: Weights) -> Result<(Database, Vec<Stri
     }
 }
 
+/// Loads a database as [`load`] does, and with it the index of its candidates: the file beside a
+/// database file, or one that is built.
+///
+/// # Errors
+/// Those of [`load`].
+pub fn load_matcher(path: Option<&Path>, weights: Weights) -> Result<(MotionMatcher, Vec<String>)> {
+    let (database, notes) = load(path, weights)?;
+    let database = Arc::new(database);
+    let matcher = match path {
+        Some(path) => MotionMatcher::open(database, path),
+        None => MotionMatcher::new(database),
+    };
+    Ok((matcher, notes))
+}
+
 /// Imports BVH files.
+///
+/// # Errors
+/// They are missing or damaged, or no clip is long enough to be matched.
 pub fn from_bvh(
     path: &Path,
     options: &ImportOptions,

@@ -6,7 +6,7 @@ use crate::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 use crate::kernels::termination;
 use crate::motion::database::Database;
 use crate::motion::features::FRAMES_PER_STEP;
-use crate::playback::Shown;
+use crate::playback::PlacedFrame;
 use crate::env::locomotion::cpu::CpuLocomotion;
 use crate::env::locomotion::{LEVELS, Task};
 use anyhow::Result;
@@ -19,17 +19,17 @@ pub fn shown(
     database: &Arc<Database>,
     task: Task,
     count: usize,
-) -> Result<Vec<Vec<Shown>>> {
+) -> Result<Vec<Vec<PlacedFrame>>> {
     let mut world = episodes(database, task, LEVELS - 1, count);
-    let mut walks: Vec<Vec<Shown>> = (0..count).map(|env| vec![standing(&world, env)]).collect();
+    let mut walks: Vec<Vec<PlacedFrame>> = (0..count).map(|env| vec![standing(&world, env)]).collect();
     let mut running: Vec<usize> = (0..count).collect();
     while !running.is_empty() {
-        let before: Vec<Shown> = (0..count).map(|env| standing(&world, env)).collect();
+        let before: Vec<PlacedFrame> = (0..count).map(|env| standing(&world, env)).collect();
         advance(&mut world, controller)?;
         for &env in &running {
             let matched = database.candidates[world.matched[env] as usize] as usize;
             // A match changes the frame alone: the character stays where it is.
-            let from = Shown {
+            let from = PlacedFrame {
                 frame: matched,
                 ..before[env]
             };
@@ -41,8 +41,8 @@ pub fn shown(
 }
 
 /// The frame that a character shows, and where.
-pub fn standing(world: &CpuLocomotion, env: usize) -> Shown {
-    Shown {
+pub fn standing(world: &CpuLocomotion, env: usize) -> PlacedFrame {
+    PlacedFrame {
         frame: world.state_u32[state_u32::FRAME * world.rules.envs + env] as usize,
         at: [state_f32::X, state_f32::Z].map(|field| world.field(field, env)),
         heading: [state_f32::HEADING_X, state_f32::HEADING_Z].map(|field| world.field(field, env)),

@@ -3,7 +3,7 @@
 use super::scene::{Colour, Scene};
 use crate::motion::roles::Roles;
 use crate::motion::skeleton::Skeleton;
-use crate::playback::Pose;
+use crate::playback::CharacterPose;
 use bytemuck::{Pod, Zeroable};
 use glam::{Quat, Vec3};
 
@@ -34,7 +34,7 @@ pub struct Bone {
 /// A bone in a shader's table.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct Row {
+pub struct BoneRow {
     ends: [u32; 2],
     /// m
     radii: [f32; 2],
@@ -43,7 +43,7 @@ pub struct Row {
 
 /// All capsules of a body.
 #[derive(Clone, Debug)]
-pub struct Body {
+pub struct CapsuleRig {
     pub bones: Vec<Bone>,
 }
 
@@ -60,15 +60,15 @@ enum Part {
     Neck,
 }
 
-impl Body {
-    pub fn of(skeleton: &Skeleton, roles: &Roles) -> Body {
+impl CapsuleRig {
+    pub fn of(skeleton: &Skeleton, roles: &Roles) -> CapsuleRig {
         let scale = skeleton.reach(roles.left_hip, roles.left_foot) / LEG;
         let anatomy = Anatomy {
             skeleton,
             roles,
             scale,
         };
-        Body {
+        CapsuleRig {
             bones: anatomy.bones(),
         }
     }
@@ -85,8 +85,8 @@ impl Body {
         points
     }
 
-    /// The bones as a shader reads them: ends by their place in [`Body::points`].
-    pub fn table(&self) -> Vec<Row> {
+    /// The bones as a shader reads them: ends by their place in [`CapsuleRig::points`].
+    pub fn table(&self) -> Vec<BoneRow> {
         let points = self.points();
         let place = |spot: Spot| {
             let place = points
@@ -96,7 +96,7 @@ impl Body {
         };
         let row = |bone: &Bone| {
             let ([a, b], [r, g, bl]) = (bone.ends, bone.colour);
-            Row {
+            BoneRow {
                 ends: [place(a), place(b)],
                 radii: [a.radius, b.radius],
                 colour: [r, g, bl, 1.0],
@@ -106,7 +106,7 @@ impl Body {
     }
 
     /// Adds a body to a scene.
-    pub fn draw(&self, scene: &mut Scene, skeleton: &Skeleton, pose: &Pose) {
+    pub fn draw(&self, scene: &mut Scene, skeleton: &Skeleton, pose: &CharacterPose) {
         let (positions, rotations) = pose.world(skeleton);
         for bone in &self.bones {
             let [a, b] = bone.ends.map(|spot| spot.place(&positions, &rotations));

@@ -1,13 +1,14 @@
 //! All environments of a training at once, drawn from where the training keeps them.
 
-use super::capsule_rig::Body;
-use super::painter::{Mesh, Pass, Pipelines};
-use super::renderer::{Renderer, cube, sphere, vertex_buffer};
+use super::capsule_rig::CapsuleRig;
+use super::meshes::{cube, sphere};
+use super::painter::{Drawable, Mesh, Pass, Pipelines, vertex_buffer};
+use super::renderer::Renderer;
 use crate::gpu::Shared;
-use crate::gpu::shader::{DRAW_CROWD, DRAW_CROWD_BLOCKS};
+use crate::gpu::shader::{DRAW_CROWD, DRAW_CROWD_CUBOIDS};
 use crate::motion::database::Database;
-use crate::playback::Shown;
-use crate::env::locomotion::Task;
+use crate::playback::PlacedFrame;
+use crate::env::locomotion::LocomotionTask;
 use crate::env::locomotion::live_view::{States, LiveView};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -40,8 +41,8 @@ struct Copied {
     boxes: Option<wgpu::Buffer>,
 }
 
-/// One mesh, drawn many times where a shader finds its places.
-struct Shape {
+/// One mesh, drawn many times at positions that a shader computes.
+struct CrowdShape {
     pipelines: Pipelines,
     mesh: Mesh,
     group: wgpu::BindGroup,
@@ -50,35 +51,35 @@ struct Shape {
 
 pub struct Crowd {
     /// The characters with their targets; then the obstacles, if there are any.
-    shapes: Vec<Shape>,
-    /// Side of the square they stand on, m.
+    shapes: Vec<CrowdShape>,
+    /// Side of the square they fill, m.
     pub side: f32,
     copied: Option<Copied>,
     /// Keeps the buffers that are drawn from.
-    _watched: LiveView,
+    _live_view: LiveView,
 }
 
 impl Crowd {
-    /// Of a batch of `envs` worlds of a task, on the renderer's device.
+    /// The crowd of `envs` environments of a task, on the renderer's device.
     pub fn new(
         renderer: &Renderer,
         database: &Database,
-        watched: LiveView,
-        task: &Task,
+        live_view: LiveView,
+        task: &LocomotionTask,
         envs: usize,
     ) -> Crowd {
         let device = &renderer.device;
-        let body = Body::of(&database.skeleton, &database.roles);
+        let rig = CapsuleRig::of(&database.skeleton, &database.roles);
         let columns = (envs as f32).sqrt().ceil() as u32;
         let params = Params {
             envs: envs as u32,
-            bones: body.bones.len() as u32,
-            points: body.points().len() as u32,
+            bones: rig.bones.len() as u32,
+            points: rig.points().len() as u32,
             columns,
             count: task.obstacles() as u32,
             spacing: match task {
-                Task::Plane(_) => SPACING,
-                Task::Obstacles(task) => 2.0 * task.arena_half_extent + SPACING,
+                LocomotionTask::Plane(_) => SPACING,
+                LocomotionTask::Obstacles(task) => 2.0 * task.arena_half_extent + SPACING,
             },
             unused: [0; 2],
         };
@@ -90,14 +91,14 @@ impl Crowd {
             })
         };
         let read = wgpu::BufferUsages::STORAGE;
-        let points = storage(bytemuck::cast_slice(&points(database, &body)), read);
-        let bones = storage(bytemuck::cast_slice(&body.table()), read);
+        let points = storage(bytemuck::cast_slice(&points(database, &rig)), read);
+        let bones = storage(bytemuck::cast_slice(&rig.table()), read);
         let uniform = storage(bytemuck::bytes_of(&params), wgpu::BufferUsages::UNIFORM);
         let uniform = uniform.as_entire_binding();
-        let copied = copied(&watched, |bytes| {
+        let copied = copied(&live_view, |bytes| {
             storage(bytes, read | wgpu::BufferUsages::COPY_DST)
         });
-        let (state_f32, state_u32, boxes) = match (&watched, &copied) {
+        let (state_f32, state_u32, boxes) = match (&live_view, &copied) {
             (LiveView::Gpu(buffers), _) => (
                 buffers.state_f32.binding(),
                 buffers.state_u32.binding(),
@@ -112,7 +113,7 @@ impl Crowd {
         };
         let (points, bones) = (points.as_entire_binding(), bones.as_entire_binding());
         let corner = wgpu::vertex_attr_array![0 => Float32x4];
-        let mut shapes = vec![Shape::new(
+        let mut shapes = vec![CrowdShape::new(
             renderer,
             DRAW_CROWD,
             vertex_buffer::<[f32; 4]>(wgpu::VertexStepMode::Vertex, &corner),
@@ -122,9 +123,9 @@ impl Crowd {
         )];
         if let Some(boxes) = boxes {
             let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
-            shapes.push(Shape::new(
+            shapes.push(CrowdShape::new(
                 renderer,
-                DRAW_CROWD_BLOCKS,
+                DRAW_CROWD_CUBOIDS,
                 vertex_buffer::<[[f32; 3]; 2]>(wgpu::VertexStepMode::Vertex, &corner),
                 Mesh::new(device, &cube()),
                 vec![boxes, uniform],
@@ -135,12 +136,15 @@ impl Crowd {
             shapes,
             side: columns as f32 * params.spacing,
             copied,
-            _watched: watched,
+            _live_view: live_view,
         }
     }
 
+}
+
+impl Drawable for Crowd {
     /// Takes over the latest state, if it is kept on the host.
-    pub fn refresh(&self, queue: &wgpu::Queue) {
+    fn refresh(&self, queue: &wgpu::Queue) {
         if let Some(copied) = &self.copied {
             let state = copied.states.now();
             queue.write_buffer(&copied.state_f32, 0, bytemuck::cast_slice(&state.state_f32));
@@ -151,7 +155,7 @@ impl Crowd {
         }
     }
 
-    pub fn draw(&self, pass: &mut wgpu::RenderPass, which: Pass) {
+    fn draw(&self, pass: &mut wgpu::RenderPass, which: Pass) {
         for shape in &self.shapes {
             pass.set_pipeline(shape.pipelines.of(which));
             pass.set_bind_group(2, &shape.group, &[]);
@@ -160,7 +164,7 @@ impl Crowd {
     }
 }
 
-impl Shape {
+impl CrowdShape {
     /// From the text of a shader that binds storage buffers and, last, the crowd as group 2.
     fn new(
         renderer: &Renderer,
@@ -169,7 +173,7 @@ impl Shape {
         mesh: Mesh,
         bound: Vec<wgpu::BindingResource>,
         instances: u32,
-    ) -> Shape {
+    ) -> CrowdShape {
         let device = &renderer.device;
         let layout = layout(device, bound.len() as u32);
         let entries: Vec<_> = (0..)
@@ -181,7 +185,7 @@ impl Shape {
             layout: &layout,
             entries: &entries,
         });
-        Shape {
+        CrowdShape {
             pipelines: renderer.pipelines(text, &[corners], Some(&layout)),
             mesh,
             group,
@@ -190,8 +194,8 @@ impl Shape {
     }
 }
 
-fn copied(watched: &LiveView, buffer: impl Fn(&[u8]) -> wgpu::Buffer) -> Option<Copied> {
-    let LiveView::Cpu(states) = watched else {
+fn copied(live_view: &LiveView, buffer: impl Fn(&[u8]) -> wgpu::Buffer) -> Option<Copied> {
+    let LiveView::Cpu(states) = live_view else {
         return None;
     };
     let now = states.now();
@@ -205,19 +209,20 @@ fn copied(watched: &LiveView, buffer: impl Fn(&[u8]) -> wgpu::Buffer) -> Option<
 }
 
 /// `[frames][points][2]`: x and y, z and 0 in the character frame, packed.
-fn points(database: &Database, body: &Body) -> Vec<[u32; 2]> {
-    let spots = body.points();
-    let pair = |x: f32, y: f32| u32::from(share(x)) | u32::from(share(y)) << 16;
+fn points(database: &Database, rig: &CapsuleRig) -> Vec<[u32; 2]> {
+    let spots = rig.points();
+    let pair = |x: f32, y: f32| u32::from(quantise(x)) | u32::from(quantise(y)) << 16;
     let frame = |frame| {
-        let shown = Shown {
+        let shown = PlacedFrame {
             frame,
             at: [0.0; 2],
             heading: [0.0, 1.0],
         };
         let (positions, rotations) = shown.pose(database).world(&database.skeleton);
-        let place = |&(joint, offset): &(usize, Vec3)| positions[joint] + rotations[joint] * offset;
-        let places: Vec<Vec3> = spots.iter().map(place).collect();
-        places.into_iter().map(|p| [pair(p.x, p.y), pair(p.z, 0.0)])
+        let position =
+            |&(joint, offset): &(usize, Vec3)| positions[joint] + rotations[joint] * offset;
+        let points: Vec<Vec3> = spots.iter().map(position).collect();
+        points.into_iter().map(|p| [pair(p.x, p.y), pair(p.z, 0.0)])
     };
     (0..database.frames())
         .into_par_iter()
@@ -226,7 +231,7 @@ fn points(database: &Database, body: &Body) -> Vec<[u32; 2]> {
 }
 
 /// A length from `-REACH` to `REACH` as 16 bits: exact to a tenth of a millimetre.
-fn share(metres: f32) -> u16 {
+fn quantise(metres: f32) -> u16 {
     let most = f32::from(i16::MAX);
     (metres / REACH * most).round().clamp(-most, most) as i16 as u16
 }

@@ -1,43 +1,43 @@
-//! What is drawn besides the body: target, obstacles, trajectories.
+//! Scenes of a playthrough: the character, its target, obstacles and trajectories.
 
-use super::playthrough::{Rollout, Stage};
-use super::scene::{Block, Colour, Scene};
+use super::playthrough::{Playthrough, PlaythroughContext};
+use super::scene::{Cuboid, Colour, Scene};
 use crate::kernels::termination;
-use crate::playback::Shown;
-use crate::env::locomotion::Task;
+use crate::playback::PlacedFrame;
+use crate::env::locomotion::LocomotionTask;
 use glam::Vec3;
 
 const TARGET: Colour = [0.06, 0.50, 0.22];
-pub const ASKED: Colour = [0.90, 0.36, 0.02];
+pub const REQUESTED: Colour = [0.90, 0.36, 0.02];
 pub const MATCHED: Colour = [0.02, 0.34, 0.75];
 const OBSTACLE: Colour = [0.42, 0.34, 0.30];
-const HAS_COLLIDED: Colour = [0.75, 0.05, 0.03];
-/// Of obstacles, m: low enough to see the character behind them.
+const HIT_OBSTACLE: Colour = [0.75, 0.05, 0.03];
+/// Height of obstacles, m: low enough to see the character behind them.
 const HEIGHT: f32 = 0.35;
 
-/// Everything of a rollout.
-pub fn scene(rollout: &Rollout, stage: &Stage) -> Scene {
-    let mut scene = untargeted(rollout, stage);
-    let reach = match stage.task {
-        Task::Plane(plane) => plane.success_radius,
-        Task::Obstacles(obstacles) => obstacles.success_radius,
+/// The scene of a playthrough.
+pub fn scene(playthrough: &Playthrough, context: &PlaythroughContext) -> Scene {
+    let mut scene = untargeted(playthrough, context);
+    let radius = match context.task {
+        LocomotionTask::Plane(plane) => plane.success_radius,
+        LocomotionTask::Obstacles(obstacles) => obstacles.success_radius,
     };
-    target(&mut scene, rollout.target(), reach);
-    obstacles(&mut scene, rollout);
+    target(&mut scene, playthrough.target(), radius);
+    obstacles(&mut scene, playthrough);
     scene
 }
 
 /// The character and its trajectories alone.
-pub fn untargeted(rollout: &Rollout, stage: &Stage) -> Scene {
+pub fn untargeted(playthrough: &Playthrough, context: &PlaythroughContext) -> Scene {
     let mut scene = Scene::default();
-    let database = &stage.database;
-    stage
-        .body
-        .draw(&mut scene, &database.skeleton, &rollout.pose);
-    if let Some(step) = &rollout.step {
+    let database = context.database();
+    context
+        .rig
+        .draw(&mut scene, &database.skeleton, &playthrough.pose);
+    if let Some(step) = &playthrough.step {
         let from = step.from;
-        trajectory(&mut scene, from.at, &step.asked, ASKED);
-        let matched = Shown {
+        trajectory(&mut scene, from.at, &step.requested, REQUESTED);
+        let matched = PlacedFrame {
             frame: step.matched,
             ..from
         };
@@ -51,13 +51,13 @@ fn on_ground(at: [f32; 2], height: f32) -> Vec3 {
 }
 
 /// A ring of the radius within which it counts as reached, and a pole in its middle.
-fn target(scene: &mut Scene, at: [f32; 2], reach: f32) {
+fn target(scene: &mut Scene, at: [f32; 2], radius: f32) {
     const CORNERS: usize = 40;
     let ring: Vec<Vec3> = (0..=CORNERS)
         .map(|corner| {
             let angle = std::f32::consts::TAU * corner as f32 / CORNERS as f32;
             on_ground(
-                [at[0] + reach * angle.sin(), at[1] + reach * angle.cos()],
+                [at[0] + radius * angle.sin(), at[1] + radius * angle.cos()],
                 0.01,
             )
         })
@@ -67,29 +67,29 @@ fn target(scene: &mut Scene, at: [f32; 2], reach: f32) {
     scene.ball(on_ground(at, 1.6), 0.1, TARGET);
 }
 
-fn obstacles(scene: &mut Scene, rollout: &Rollout) {
-    let struck = rollout
+fn obstacles(scene: &mut Scene, playthrough: &Playthrough) {
+    let struck = playthrough
         .step
         .as_ref()
         .is_some_and(|step| step.termination == termination::FAILED);
-    let at = rollout.shown.at;
-    for (slot, [x, z, half_x, half_z]) in rollout.obstacles().into_iter().enumerate() {
+    let at = playthrough.shown.at;
+    for (slot, [x, z, half_x, half_z]) in playthrough.obstacles().into_iter().enumerate() {
         let hit = struck && (x - at[0]).abs() <= half_x && (z - at[1]).abs() <= half_z;
         // Obstacles overlap: each has its own height and shade. Steps of the golden ratio never meet.
         let own = (slot as f32 * 0.618_034).fract();
         let height = HEIGHT * (0.8 + 0.4 * own);
-        scene.blocks.push(Block {
+        scene.cuboids.push(Cuboid {
             centre: [x, 0.5 * height, z],
             half: [half_x, 0.5 * height, half_z],
             colour: match hit {
-                true => HAS_COLLIDED,
+                true => HIT_OBSTACLE,
                 false => OBSTACLE.map(|value| value * (0.75 + 0.5 * own)),
             },
         });
     }
 }
 
-/// A line through the points asked for, with an arrow each for where to face.
+/// A line through the points of a trajectory, with an arrow each for the direction to face.
 pub fn trajectory(scene: &mut Scene, from: [f32; 2], points: &[[f32; 4]], colour: Colour) {
     const ABOVE: f32 = 0.025;
     let places = std::iter::once(from).chain(points.iter().map(|p| [p[0], p[1]]));

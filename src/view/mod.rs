@@ -6,6 +6,7 @@ pub mod camera;
 pub mod render_target;
 pub mod crowd;
 pub mod image_files;
+pub mod meshes;
 pub mod debug_draw;
 pub mod painter;
 pub mod renderer;
@@ -15,7 +16,7 @@ pub mod shapes;
 pub mod strip;
 
 pub use camera::Camera;
-pub use render_target::Canvas;
+pub use render_target::RenderTarget;
 pub use crowd::Crowd;
 pub use renderer::Renderer;
 pub use scene::Scene;

@@ -5,6 +5,15 @@ use bytemuck::Pod;
 use std::num::NonZeroU64;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
+/// Something that draws itself in both passes, beside a scene.
+pub trait Drawable {
+    /// Takes over what has changed since the last picture.
+    fn refresh(&self, queue: &wgpu::Queue);
+
+    /// Records its draw calls in a pass.
+    fn draw(&self, pass: &mut wgpu::RenderPass, which: Pass);
+}
+
 /// A mesh on the device, drawn once an instance.
 pub struct Mesh {
     corners: wgpu::Buffer,
@@ -12,6 +21,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Copies the corners of triangles to the device.
     pub fn new<T: Pod>(device: &wgpu::Device, corners: &[T]) -> Mesh {
         Mesh {
             corners: device.create_buffer_init(&BufferInitDescriptor {
@@ -23,19 +33,20 @@ impl Mesh {
         }
     }
 
+    /// Draws so many instances.
     pub fn draw(&self, pass: &mut wgpu::RenderPass, instances: u32) {
         pass.set_vertex_buffer(0, self.corners.slice(..));
         pass.draw(0..self.count, 0..instances);
     }
 }
 
-/// What the two passes draw a shape with.
+/// The render pipelines of a shape, one a pass.
 pub struct Pipelines {
     cast: wgpu::RenderPipeline,
     paint: wgpu::RenderPipeline,
 }
 
-/// What a pass binds besides the shapes' own.
+/// Layouts of the bind groups: those of a pass, and a shape's own.
 pub struct Layouts<'a> {
     pub view: &'a wgpu::BindGroupLayout,
     pub shadows: &'a wgpu::BindGroupLayout,
@@ -43,7 +54,7 @@ pub struct Layouts<'a> {
     pub own: Option<&'a wgpu::BindGroupLayout>,
 }
 
-/// Which pass.
+/// A pass over the scene.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Pass {
     /// Depths as the sun sees them.
@@ -124,6 +135,7 @@ impl Pipelines {
         }
     }
 
+    /// The pipeline of a pass.
     pub fn of(&self, pass: Pass) -> &wgpu::RenderPipeline {
         match pass {
             Pass::Cast => &self.cast,
@@ -142,6 +154,7 @@ pub struct Painter {
 }
 
 impl Painter {
+    /// A shape without instances so far.
     pub fn new(device: &wgpu::Device, pipelines: Pipelines, mesh: Mesh) -> Painter {
         Painter {
             pipelines,
@@ -165,6 +178,7 @@ impl Painter {
         self.count = instances.len() as u32;
     }
 
+    /// Draws all instances.
     pub fn draw(&self, pass: &mut wgpu::RenderPass, which: Pass) {
         if self.count == 0 {
             return;
@@ -173,6 +187,18 @@ impl Painter {
         pass.set_vertex_buffer(1, self.instances.slice(..));
         self.mesh.draw(pass, self.count);
     }
+}
+
+/// The layout of a vertex buffer whose elements are `T`.
+pub fn vertex_buffer<T>(
+    step_mode: wgpu::VertexStepMode,
+    attributes: &[wgpu::VertexAttribute],
+) -> Option<wgpu::VertexBufferLayout<'_>> {
+    Some(wgpu::VertexBufferLayout {
+        array_stride: size_of::<T>() as u64,
+        step_mode,
+        attributes,
+    })
 }
 
 fn vertices(device: &wgpu::Device, size: u64) -> wgpu::Buffer {

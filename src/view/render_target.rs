@@ -9,7 +9,7 @@ pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub const SAMPLES: u32 = 4;
 
 /// A picture on the device.
-pub struct Canvas {
+pub struct RenderTarget {
     /// Pixels.
     pub size: [u32; 2],
     stored: wgpu::Texture,
@@ -18,11 +18,11 @@ pub struct Canvas {
     pub(super) depth: wgpu::TextureView,
 }
 
-impl Canvas {
-    pub fn new(device: &wgpu::Device, size: [u32; 2]) -> Canvas {
+impl RenderTarget {
+    pub fn new(device: &wgpu::Device, size: [u32; 2]) -> RenderTarget {
         let texture = |format, samples, usage, views: &[_]| {
             device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("canvas"),
+                label: Some("target"),
                 size: wgpu::Extent3d {
                     width: size[0],
                     height: size[1],
@@ -45,7 +45,7 @@ impl Canvas {
                 ..Default::default()
             })
         };
-        Canvas {
+        RenderTarget {
             size,
             drawn: view(&stored, COLOUR),
             samples: view(&texture(COLOUR, SAMPLES, none, &[]), COLOUR),

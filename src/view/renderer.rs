@@ -1,12 +1,12 @@
 //! Draws a scene: once as the sun sees it, for the shadows, and once as the camera does.
 
 use super::camera::Camera;
-use super::render_target::{Canvas, DEPTH};
-use super::crowd::Crowd;
-use super::painter::{Layouts, Mesh, Painter, Pass, Pipelines};
-use super::scene::{Block, Capsule, Scene};
+use super::render_target::{RenderTarget, DEPTH};
+use super::meshes::{cube, sphere};
+use super::painter::{Drawable, Layouts, Mesh, Painter, Pass, Pipelines, vertex_buffer};
+use super::scene::{Cuboid, Capsule, Scene};
 use crate::gpu::Gpu;
-use crate::gpu::shader::{DRAW_BLOCK, DRAW_CAPSULE, DRAW_GROUND};
+use crate::gpu::shader::{DRAW_CUBOID, DRAW_CAPSULE, DRAW_GROUND};
 use bytemuck::{Pod, Zeroable};
 use glam::camera::rh::proj::directx::orthographic;
 use glam::camera::rh::view::look_at_mat4;
@@ -45,7 +45,7 @@ pub struct Renderer {
     shadows_layout: wgpu::BindGroupLayout,
     ground: Pipelines,
     capsules: Painter,
-    blocks: Painter,
+    cuboids: Painter,
     camera: Bound,
     sun: Bound,
     depths: wgpu::TextureView,
@@ -67,7 +67,7 @@ impl Renderer {
         Renderer {
             ground: Pipelines::new(&device, DRAW_GROUND, &[], &layouts),
             capsules: capsules(&device, &layouts),
-            blocks: blocks(&device, &layouts),
+            cuboids: cuboids(&device, &layouts),
             camera: bound(&device, &view),
             sun: bound(&device, &view),
             shadows: shadows(&device, &shadows_layout, &depths),
@@ -79,7 +79,7 @@ impl Renderer {
         }
     }
 
-    /// For a shape of its own: from a shader under `shaders/view`, with what it binds as group 2.
+    /// Pipelines of another shape: from a shader under `shaders/view`, with what it binds as group 2.
     pub fn pipelines(
         &self,
         text: &str,
@@ -94,14 +94,20 @@ impl Renderer {
         Pipelines::new(&self.device, text, buffers, &layouts)
     }
 
-    /// Draws a scene, and a crowd if there is one.
-    pub fn draw(&mut self, scene: &Scene, crowd: Option<&Crowd>, camera: &Camera, canvas: &Canvas) {
-        if let Some(crowd) = crowd {
-            crowd.refresh(&self.queue);
+    /// Draws a scene, and something beside it if there is any.
+    pub fn draw(
+        &mut self,
+        scene: &Scene,
+        beside: Option<&dyn Drawable>,
+        camera: &Camera,
+        target: &RenderTarget,
+    ) {
+        if let Some(drawable) = beside {
+            drawable.refresh(&self.queue);
         }
         let (device, queue) = (&self.device, &self.queue);
         self.capsules.set(device, queue, &scene.capsules);
-        self.blocks.set(device, queue, &scene.blocks);
+        self.cuboids.set(device, queue, &scene.cuboids);
         let reach = 1.6 * camera.distance.max(2.5);
         let sunlit = sunlit(camera.focus, reach);
         let mut view = View {
@@ -114,15 +120,15 @@ impl Renderer {
             soft: (SOFT / (2.0 * reach)).max(1.5 / SHADOWS as f32),
         };
         queue.write_buffer(&self.sun.buffer, 0, bytemuck::bytes_of(&view));
-        view.clip = camera.clip(canvas.aspect()).to_cols_array_2d();
+        view.clip = camera.clip(target.aspect()).to_cols_array_2d();
         queue.write_buffer(&self.camera.buffer, 0, bytemuck::bytes_of(&view));
         let mut encoder = device.create_command_encoder(&Default::default());
-        self.cast(&mut encoder, crowd);
-        self.paint(&mut encoder, crowd, canvas);
+        self.cast(&mut encoder, beside);
+        self.paint(&mut encoder, beside, target);
         queue.submit([encoder.finish()]);
     }
 
-    fn cast(&self, encoder: &mut wgpu::CommandEncoder, crowd: Option<&Crowd>) {
+    fn cast(&self, encoder: &mut wgpu::CommandEncoder, beside: Option<&dyn Drawable>) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadows"),
             depth_stencil_attachment: Some(cleared(&self.depths, wgpu::StoreOp::Store)),
@@ -130,13 +136,13 @@ impl Renderer {
         });
         pass.set_bind_group(0, &self.sun.group, &[]);
         self.capsules.draw(&mut pass, Pass::Cast);
-        self.blocks.draw(&mut pass, Pass::Cast);
-        if let Some(crowd) = crowd {
-            crowd.draw(&mut pass, Pass::Cast);
+        self.cuboids.draw(&mut pass, Pass::Cast);
+        if let Some(drawable) = beside {
+            drawable.draw(&mut pass, Pass::Cast);
         }
     }
 
-    fn paint(&self, encoder: &mut wgpu::CommandEncoder, crowd: Option<&Crowd>, canvas: &Canvas) {
+    fn paint(&self, encoder: &mut wgpu::CommandEncoder, beside: Option<&dyn Drawable>, target: &RenderTarget) {
         let sky = wgpu::Color {
             r: 0.70,
             g: 0.77,
@@ -146,23 +152,23 @@ impl Renderer {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &canvas.samples,
+                view: &target.samples,
                 depth_slice: None,
-                resolve_target: Some(&canvas.drawn),
+                resolve_target: Some(&target.drawn),
                 ops: wgpu::Operations {
                     load: wgpu::LoadOp::Clear(sky),
                     store: wgpu::StoreOp::Discard,
                 },
             })],
-            depth_stencil_attachment: Some(cleared(&canvas.depth, wgpu::StoreOp::Discard)),
+            depth_stencil_attachment: Some(cleared(&target.depth, wgpu::StoreOp::Discard)),
             ..Default::default()
         });
         pass.set_bind_group(0, &self.camera.group, &[]);
         pass.set_bind_group(1, &self.shadows, &[]);
         self.capsules.draw(&mut pass, Pass::Paint);
-        self.blocks.draw(&mut pass, Pass::Paint);
-        if let Some(crowd) = crowd {
-            crowd.draw(&mut pass, Pass::Paint);
+        self.cuboids.draw(&mut pass, Pass::Paint);
+        if let Some(drawable) = beside {
+            drawable.draw(&mut pass, Pass::Paint);
         }
         pass.set_pipeline(self.ground.of(Pass::Paint));
         pass.draw(0..4, 0..1);
@@ -201,65 +207,15 @@ fn capsules(device: &wgpu::Device, layouts: &Layouts) -> Painter {
     Painter::new(device, pipelines, Mesh::new(device, &sphere(18, 5)))
 }
 
-fn blocks(device: &wgpu::Device, layouts: &Layouts) -> Painter {
+fn cuboids(device: &wgpu::Device, layouts: &Layouts) -> Painter {
     let corner = attributes![0 => Float32x3, 1 => Float32x3];
-    let state_u32 = attributes![2 => Float32x3, 3 => Float32x3, 4 => Float32x3];
+    let instance = attributes![2 => Float32x3, 3 => Float32x3, 4 => Float32x3];
     let buffers = [
         vertex_buffer::<[[f32; 3]; 2]>(wgpu::VertexStepMode::Vertex, &corner),
-        vertex_buffer::<Block>(wgpu::VertexStepMode::Instance, &state_u32),
+        vertex_buffer::<Cuboid>(wgpu::VertexStepMode::Instance, &instance),
     ];
-    let pipelines = Pipelines::new(device, DRAW_BLOCK, &buffers, layouts);
+    let pipelines = Pipelines::new(device, DRAW_CUBOID, &buffers, layouts);
     Painter::new(device, pipelines, Mesh::new(device, &cube()))
-}
-
-pub fn vertex_buffer<T>(
-    step_mode: wgpu::VertexStepMode,
-    attributes: &[wgpu::VertexAttribute],
-) -> Option<wgpu::VertexBufferLayout<'_>> {
-    Some(wgpu::VertexBufferLayout {
-        array_stride: size_of::<T>() as u64,
-        step_mode,
-        attributes,
-    })
-}
-
-/// The unit sphere around z as triangles, cut open at its equator: `w` is 0 below, 1 above.
-/// `around` corners a ring, `up` rings from the equator to a pole.
-pub fn sphere(around: usize, up: usize) -> Vec<[f32; 4]> {
-    use std::f32::consts::{FRAC_PI_2, TAU};
-    let below = (0..=up).map(|ring| (ring as f32 / up as f32 - 1.0, 0.0));
-    let above = (0..=up).map(|ring| (ring as f32 / up as f32, 1.0));
-    let rings: Vec<(f32, f32)> = below.chain(above).collect();
-    let corner = |(height, end): (f32, f32), step: usize| {
-        let (sin, cos) = (TAU * step as f32 / around as f32).sin_cos();
-        let (z, out) = (FRAC_PI_2 * height).sin_cos();
-        [out * cos, out * sin, z, end]
-    };
-    let mut corners = Vec::new();
-    for pair in rings.windows(2) {
-        for step in 0..around {
-            let [a, b] = [step, step + 1].map(|step| corner(pair[0], step));
-            let [c, d] = [step, step + 1].map(|step| corner(pair[1], step));
-            corners.extend([a, b, c, c, b, d]);
-        }
-    }
-    corners
-}
-
-/// The cube from -1 to 1 as triangles: corner and normal.
-pub fn cube() -> Vec<[[f32; 3]; 2]> {
-    let mut corners = Vec::new();
-    for axis in 0..3 {
-        for sign in [-1.0f32, 1.0] {
-            for (u, v) in [(-1, -1), (1, -1), (-1, 1), (-1, 1), (1, -1), (1, 1)] {
-                let (mut at, mut normal) = ([0.0; 3], [0.0; 3]);
-                (at[axis], normal[axis]) = (sign, sign);
-                (at[(axis + 1) % 3], at[(axis + 2) % 3]) = (u as f32, v as f32);
-                corners.push([at, normal]);
-            }
-        }
-    }
-    corners
 }
 
 fn view_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {

@@ -20,7 +20,7 @@ pub struct Capsule {
 /// An upright box.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct Block {
+pub struct Cuboid {
     pub centre: [f32; 3],
     pub half: [f32; 3],
     pub colour: Colour,
@@ -29,7 +29,7 @@ pub struct Block {
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     pub capsules: Vec<Capsule>,
-    pub blocks: Vec<Block>,
+    pub cuboids: Vec<Cuboid>,
 }
 
 impl Scene {

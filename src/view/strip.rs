@@ -2,7 +2,7 @@
 //! given the recorded angles.
 
 use super::camera::Camera;
-use super::render_target::Canvas;
+use super::render_target::RenderTarget;
 use super::image_files;
 use super::renderer::Renderer;
 use super::scene::Scene;
@@ -65,7 +65,7 @@ struct Strip<'a> {
     model: &'a Arc<Model>,
     motion: &'a BodyMotion,
     renderer: Renderer,
-    canvas: Canvas,
+    target: RenderTarget,
     camera: Camera,
 }
 
@@ -77,7 +77,7 @@ impl<'a> Strip<'a> {
             model,
             motion,
             renderer: Renderer::new(gpu),
-            canvas: Canvas::new(&gpu.setup.device, SIZE),
+            target: RenderTarget::new(&gpu.setup.device, SIZE),
             camera: Camera {
                 yaw: front.x.atan2(front.z) + YAW,
                 ..Camera::default()
@@ -127,22 +127,22 @@ impl<'a> Strip<'a> {
     /// One picture beside the other.
     fn write(&mut self, path: &Path, shots: Vec<Shot>) -> Result<()> {
         let [width, height] = SIZE.map(|side| side as usize);
-        let state_u32 = PICTURES * (width + GAP) - GAP;
-        let mut strip = vec![255; 3 * state_u32 * height];
+        let total_width = PICTURES * (width + GAP) - GAP;
+        let mut strip = vec![255; 3 * total_width * height];
         for (place, shot) in shots.iter().enumerate() {
             self.camera.follow([shot.focus.x, shot.focus.z], 1.0);
             self.camera.distance = NEAR + WIDE * shot.side;
             self.renderer
-                .draw(&shot.scene, None, &self.camera, &self.canvas);
+                .draw(&shot.scene, None, &self.camera, &self.target);
             let picture = self
-                .canvas
+                .target
                 .read(&self.renderer.device, &self.renderer.queue)?;
-            let rows = strip.chunks_exact_mut(3 * state_u32);
+            let rows = strip.chunks_exact_mut(3 * total_width);
             for (row, pixels) in rows.zip(picture.chunks_exact(3 * width)) {
                 row[3 * place * (width + GAP)..][..3 * width].copy_from_slice(pixels);
             }
         }
-        image_files::png(path, [state_u32 as u32, SIZE[1]], &strip)
+        image_files::png(path, [total_width as u32, SIZE[1]], &strip)
     }
 }
 

@@ -4,17 +4,16 @@
 use super::gamepad::Gamepad;
 use super::maps;
 use super::runners_up::{Found, nearest};
-use super::screen::{Screen, Touch};
+use super::screen::{Screen, PointerAction};
 use super::source::{self, Source, Steered};
 use super::timeline::Timeline;
 use crate::gpu::Gpu;
 use crate::kernels::locomotion::locomotion_layout::CELL;
-use crate::motion::database::ROW_STRIDE;
-use crate::motion::features::FRAMES_PER_STEP;
-use crate::playback::Shown;
+use crate::motion::features::{FRAMES_PER_STEP, ROW_STRIDE};
+use crate::playback::PlacedFrame;
 use crate::train::controller::Controller;
 use crate::view::debug_draw::{self, MATCHED, trajectory};
-use crate::view::playthrough::{Rollout, Stage};
+use crate::view::playthrough::{Playthrough, PlaythroughContext};
 use crate::view::{Camera, Scene};
 use anyhow::Result;
 use eframe::egui::{self, Key, Ui};
@@ -39,7 +38,7 @@ pub struct Choice {
 }
 
 pub struct Viewer {
-    stage: Stage,
+    context: PlaythroughContext,
     source: Source,
     /// A run's checkpoints; none when only motion is looked at.
     choices: Vec<Choice>,
@@ -74,22 +73,22 @@ impl Viewer {
     pub fn new(
         gpu: &Gpu,
         window: &RenderState,
-        stage: Stage,
+        context: PlaythroughContext,
         choices: Vec<Choice>,
     ) -> Result<Self> {
         let source = match choices.last() {
             Some(choice) => Source::Policy((choice.load)()?),
-            None => Source::Steered(Steered::new(stage.database.clone())),
+            None => Source::Steered(Steered::new(context.database().clone())),
         };
         let mut camera = Camera::default();
-        if stage.task.obstacles() > 0 {
+        if context.task.obstacles() > 0 {
             camera.distance = 9.0;
             camera.pitch = 0.6;
         }
         Ok(Viewer {
-            timeline: Timeline::new(Rollout::new(&stage, 0)),
+            timeline: Timeline::new(Playthrough::new(&context, 0)),
             chosen: choices.len().saturating_sub(1),
-            stage,
+            context,
             source,
             choices,
             clip_frame: 0,
@@ -128,7 +127,7 @@ impl Viewer {
     }
 
     /// Where the character is shown to stand.
-    pub fn shown(&self) -> Shown {
+    pub fn shown(&self) -> PlacedFrame {
         match self.source {
             Source::Clip(clip) => self.clip_shown(clip),
             _ => self.timeline.now().shown,
@@ -198,7 +197,7 @@ impl Viewer {
             }
             false => now.shown.heading,
         };
-        let target = [0, 1].map(|i| at[i] + source::TRAJECTORY_OFFSETS * direction[i]);
+        let target = [0, 1].map(|i| at[i] + source::LOOK_AHEAD_M * direction[i]);
         self.timeline.change().set_target(target);
     }
 
@@ -218,7 +217,7 @@ impl Viewer {
     fn forward(&mut self) {
         match self.source.controller() {
             Some(controller) => {
-                if let Err(error) = self.timeline.forward(&self.stage, controller) {
+                if let Err(error) = self.timeline.forward(&self.context, controller) {
                     self.problem = Some(format!("{error:#}"));
                     self.playing = false;
                 }
@@ -233,7 +232,7 @@ impl Viewer {
     /// Frames there are to go to.
     fn frames(&self) -> usize {
         match self.source {
-            Source::Clip(clip) => self.stage.database.clips[clip].frames,
+            Source::Clip(clip) => self.context.database().clips[clip].frames,
             _ => self.timeline.len(),
         }
     }
@@ -305,7 +304,7 @@ impl Viewer {
         }
         ui.separator();
         self.state(ui);
-        let count = self.stage.task.obstacles();
+        let count = self.context.task.obstacles();
         if count > 0 {
             ui.separator();
             ui.strong("Obstacle maps");
@@ -341,7 +340,7 @@ impl Viewer {
         }
         if ui.button("Next episode").clicked() {
             let next = self.timeline.now().episode + 1;
-            self.timeline = Timeline::new(Rollout::new(&self.stage, next));
+            self.timeline = Timeline::new(Playthrough::new(&self.context, next));
         }
         ui.small("Click the ground to move the target; drag an obstacle; drag elsewhere to turn the camera.");
     }
@@ -349,7 +348,7 @@ impl Viewer {
     fn choose_motion(&mut self, ui: &mut Ui) {
         let steered = matches!(self.source, Source::Steered(_));
         if ui.selectable_label(steered, "Steer").clicked() && !steered {
-            self.source = Source::Steered(Steered::new(self.stage.database.clone()));
+            self.source = Source::Steered(Steered::new(self.context.database().clone()));
             self.playing = true;
         }
         ui.small("Arrow keys or WASD walk, with shift run.");
@@ -363,14 +362,14 @@ impl Viewer {
             .id_salt("clips")
             .max_height(260.0);
         list.show(ui, |ui| {
-            for index in 0..self.stage.database.clips.len() {
+            for index in 0..self.context.database().clips.len() {
                 self.clip_entry(ui, index, chosen == Some(index));
             }
         });
     }
 
     fn clip_entry(&mut self, ui: &mut Ui, index: usize, chosen: bool) {
-        let clip = &self.stage.database.clips[index];
+        let clip = &self.context.database().clips[index];
         let seconds = clip.frames as f32 / RATE;
         let label = format!("{} ({seconds:.0} s)", clip.name);
         let response = ui.selectable_label(chosen, label);
@@ -394,14 +393,14 @@ impl Viewer {
         }
         ui.label(format!("plays {}", self.name(now.shown.frame)));
         ui.horizontal(|ui| {
-            ui.colored_label(colour(debug_draw::ASKED), "asked for");
+            ui.colored_label(colour(debug_draw::REQUESTED), "requested");
             ui.colored_label(colour(MATCHED), "matched");
         });
     }
 
     /// A frame, by its clip and its number there.
     fn name(&self, frame: usize) -> String {
-        let clip = self.stage.database.clip(frame);
+        let clip = self.context.database().clip(frame);
         format!("{} {}", clip.name, frame - clip.first)
     }
 
@@ -410,9 +409,9 @@ impl Viewer {
         if now.step.is_none() {
             return;
         }
-        let query = now.world.queries[0];
+        let query = now.env.queries[0];
         if self.found_for != Some(query) {
-            self.found = nearest(&self.stage.database, &query, LISTED);
+            self.found = nearest(self.context.database(), &query, LISTED);
             self.found_for = Some(query);
         }
         egui::Grid::new("found").striped(true).show(ui, |ui| {
@@ -430,13 +429,13 @@ impl Viewer {
                 ui.end_row();
             }
         });
-        ui.small("Squared distances to what was asked, the frame played first.");
+        ui.small("Squared distances to what was requested, the frame played first.");
     }
 
-    fn clip_shown(&self, clip: usize) -> Shown {
-        let frame = self.stage.database.clips[clip].first + self.clip_frame;
-        let [x, z, hx, hz] = self.stage.database.path[frame];
-        Shown {
+    fn clip_shown(&self, clip: usize) -> PlacedFrame {
+        let frame = self.context.database().clips[clip].first + self.clip_frame;
+        let [x, z, hx, hz] = self.context.database().path[frame];
+        PlacedFrame {
             frame,
             at: [x, z],
             heading: [hx, hz],
@@ -444,17 +443,17 @@ impl Viewer {
     }
 
     fn scene(&self) -> Scene {
-        let (stage, now) = (&self.stage, self.timeline.now());
+        let (context, now) = (&self.context, self.timeline.now());
         match self.source {
-            Source::Policy(_) => debug_draw::scene(now, stage),
-            Source::Steered(_) => debug_draw::untargeted(now, stage),
+            Source::Policy(_) => debug_draw::scene(now, context),
+            Source::Steered(_) => debug_draw::untargeted(now, context),
             Source::Clip(clip) => {
                 let (mut scene, shown) = (Scene::default(), self.clip_shown(clip));
-                let skeleton = &stage.database.skeleton;
-                stage
-                    .body
-                    .draw(&mut scene, skeleton, &shown.pose(&stage.database));
-                let path = shown.path(&stage.database);
+                let skeleton = &context.database().skeleton;
+                context
+                    .rig
+                    .draw(&mut scene, skeleton, &shown.pose(context.database()));
+                let path = shown.path(context.database());
                 trajectory(&mut scene, shown.at, &path, MATCHED);
                 scene
             }
@@ -471,16 +470,16 @@ impl Viewer {
             return;
         };
         match touch {
-            Some(Touch::Click(at)) => self.timeline.change().set_target(at),
-            Some(Touch::Press(at)) => self.grabbed = self.obstacle(at),
-            Some(Touch::Drag(at)) => {
+            Some(PointerAction::Click(at)) => self.timeline.change().set_target(at),
+            Some(PointerAction::Press(at)) => self.grabbed = self.obstacle(at),
+            Some(PointerAction::Drag(at)) => {
                 if let Some((slot, [x, z])) = self.grabbed {
                     self.timeline
                         .change()
                         .move_obstacle(slot, [at[0] - x, at[1] - z]);
                 }
             }
-            Some(Touch::Release) => self.grabbed = None,
+            Some(PointerAction::Release) => self.grabbed = None,
             None => {}
         }
     }

@@ -25,14 +25,14 @@ impl Pace {
         }
     }
 
-    /// How long to wait for the next picture, right after one has been asked for.
+    /// How long to wait for the next picture, right after one has been requested.
     pub fn next(&self, queue: &wgpu::Queue) -> Duration {
         if !self.software {
             return OFTEN;
         }
-        let (just_reset, took) = (Instant::now(), self.took.clone());
+        let (began, took) = (Instant::now(), self.took.clone());
         queue.on_submitted_work_done(move || {
-            *took.lock().unwrap_or_else(PoisonError::into_inner) = just_reset.elapsed();
+            *took.lock().unwrap_or_else(PoisonError::into_inner) = began.elapsed();
         });
         let took = *self.took.lock().unwrap_or_else(PoisonError::into_inner);
         (SHARE * took).clamp(SELDOM[0], SELDOM[1])

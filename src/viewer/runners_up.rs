@@ -1,7 +1,7 @@
 //! What the search found, and what it nearly found.
 
-use crate::motion::database::{Database, ROW_STRIDE};
-use crate::motion::features::{FEATURE_DIM, POSE_DIM};
+use crate::motion::database::Database;
+use crate::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE};
 
 /// A candidate and its distance to a query.
 #[derive(Clone, Copy, Debug, PartialEq)]

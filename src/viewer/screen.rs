@@ -1,7 +1,8 @@
 //! The part of the window that shows the scene.
 
 use crate::gpu::Gpu;
-use crate::view::{Camera, Canvas, Crowd, Renderer, Scene};
+use crate::view::painter::Drawable;
+use crate::view::{Camera, RenderTarget, Renderer, Scene};
 use eframe::egui::{self, Sense, TextureId, Ui, Vec2};
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu::FilterMode;
@@ -17,7 +18,7 @@ const COARSE: f32 = 0.5;
 
 pub struct Screen {
     pub renderer: Renderer,
-    canvas: Canvas,
+    target: RenderTarget,
     window: RenderState,
     texture: TextureId,
     /// Pixels drawn a pixel shown, along a side.
@@ -26,7 +27,7 @@ pub struct Screen {
 
 /// What the pointer did on the ground, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Touch {
+pub enum PointerAction {
     Click([f32; 2]),
     /// Pressed, about to drag.
     Press([f32; 2]),
@@ -38,15 +39,15 @@ impl Screen {
     /// In a window on the device that `gpu` has.
     pub fn new(gpu: &Gpu, window: &RenderState) -> Screen {
         let renderer = Renderer::new(gpu);
-        let canvas = Canvas::new(&renderer.device, [16, 16]);
+        let target = RenderTarget::new(&renderer.device, [16, 16]);
         let texture = window.renderer.write().register_native_texture(
             &window.device,
-            &canvas.shown(),
+            &target.shown(),
             FilterMode::Linear,
         );
         Screen {
             renderer,
-            canvas,
+            target,
             window: window.clone(),
             texture,
             scale: if gpu.software { COARSE } else { 1.0 },
@@ -59,14 +60,14 @@ impl Screen {
         &mut self,
         ui: &mut Ui,
         scene: &Scene,
-        crowd: Option<&Crowd>,
+        beside: Option<&dyn Drawable>,
         camera: &mut Camera,
         grabbed: bool,
-    ) -> Option<Touch> {
+    ) -> Option<PointerAction> {
         let points = ui.available_size().max(Vec2::splat(16.0));
         let pixels = points * ui.ctx().pixels_per_point() * self.scale;
         self.fit([pixels.x, pixels.y].map(|side| (side.round() as u32).clamp(16, 8192)));
-        self.renderer.draw(scene, crowd, camera, &self.canvas);
+        self.renderer.draw(scene, beside, camera, &self.target);
         let image =
             egui::Image::from_texture((self.texture, points)).sense(Sense::click_and_drag());
         let response = ui.add(image);
@@ -82,17 +83,17 @@ impl Screen {
         };
         let dragged = response.drag_delta();
         if response.drag_stopped() {
-            return Some(Touch::Release);
+            return Some(PointerAction::Release);
         }
         if response.clicked() {
-            return on_ground(camera).map(Touch::Click);
+            return on_ground(camera).map(PointerAction::Click);
         }
         if response.drag_started() && response.dragged_by(egui::PointerButton::Primary) {
             // Where the button went down, not where the drag was noticed.
-            return on_ground(camera).map(Touch::Press);
+            return on_ground(camera).map(PointerAction::Press);
         }
         if grabbed {
-            return on_ground(camera).map(Touch::Drag);
+            return on_ground(camera).map(PointerAction::Drag);
         }
         if response.dragged_by(egui::PointerButton::Secondary) {
             let metre = camera.distance * PAN;
@@ -104,16 +105,16 @@ impl Screen {
     }
 
     fn fit(&mut self, size: [u32; 2]) {
-        if size == self.canvas.size {
+        if size == self.target.size {
             return;
         }
-        self.canvas = Canvas::new(&self.renderer.device, size);
+        self.target = RenderTarget::new(&self.renderer.device, size);
         self.window
             .renderer
             .write()
             .update_egui_texture_from_wgpu_texture(
                 &self.window.device,
-                &self.canvas.shown(),
+                &self.target.shown(),
                 FilterMode::Linear,
                 self.texture,
             );

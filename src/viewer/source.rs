@@ -18,8 +18,8 @@ pub enum Source {
 pub const WALK: f32 = 1.5;
 pub const RUN: f32 = 4.0;
 /// How far ahead of the character the point lies that it is steered to, m.
-pub const TRAJECTORY_OFFSETS: f32 = 10.0;
-/// Share of the way that the speed goes to the one asked for in a step.
+pub const LOOK_AHEAD_M: f32 = 10.0;
+/// Fraction of the difference to the requested speed that a step makes up for.
 const EASE: f32 = 0.5;
 
 /// Classic motion matching: asks for a straight walk to a point that is always ahead.

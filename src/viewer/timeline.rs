@@ -1,35 +1,35 @@
 //! What has been played, to go back to.
 
 use crate::train::controller::Controller;
-use crate::view::playthrough::{Rollout, Stage};
+use crate::view::playthrough::{Playthrough, PlaythroughContext};
 use anyhow::Result;
 use std::collections::VecDeque;
 
 /// Frames kept: five minutes.
 const KEPT: usize = 9000;
 
-/// Every frame of a rollout with all that decides the next: going on from an earlier one plays the
+/// Every frame of a playthrough with all that decides the next: going on from an earlier one plays the
 /// same again, unless something is changed there.
 pub struct Timeline {
-    moments: VecDeque<Rollout>,
+    moments: VecDeque<Playthrough>,
     /// The one shown.
     at: usize,
 }
 
 impl Timeline {
-    pub fn new(first: Rollout) -> Timeline {
+    pub fn new(first: Playthrough) -> Timeline {
         Timeline {
             moments: VecDeque::from([first]),
             at: 0,
         }
     }
 
-    pub fn now(&self) -> &Rollout {
+    pub fn now(&self) -> &Playthrough {
         &self.moments[self.at]
     }
 
     /// The moment shown, to change: what came after it is forgotten.
-    pub fn change(&mut self) -> &mut Rollout {
+    pub fn change(&mut self) -> &mut Playthrough {
         self.moments.truncate(self.at + 1);
         &mut self.moments[self.at]
     }
@@ -54,10 +54,10 @@ impl Timeline {
     ///
     /// # Errors
     /// The controller's.
-    pub fn forward(&mut self, stage: &Stage, controller: &dyn Controller) -> Result<()> {
+    pub fn forward(&mut self, context: &PlaythroughContext, controller: &dyn Controller) -> Result<()> {
         if self.at + 1 == self.moments.len() {
             let mut next = self.now().clone();
-            next.advance(stage, controller)?;
+            next.advance(context, controller)?;
             self.moments.push_back(next);
             if self.moments.len() > KEPT {
                 self.moments.pop_front();

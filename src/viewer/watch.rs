@@ -6,15 +6,16 @@ use crate::gpu::Gpu;
 use crate::motion::database::Database;
 use crate::train::metrics::Row;
 use crate::train::trainer::Watch;
+use crate::view::painter::Drawable;
 use crate::view::{Camera, Crowd, Scene};
-use crate::env::locomotion::Task;
+use crate::env::locomotion::LocomotionTask;
 use eframe::egui::{self, Ui};
 use eframe::egui_wgpu::RenderState;
 use std::sync::{Arc, PoisonError};
 
 pub struct Crowded {
     database: Arc<Database>,
-    task: Task,
+    task: LocomotionTask,
     envs: usize,
     watch: Arc<Watch>,
     /// Once the worlds are open.
@@ -29,7 +30,7 @@ impl Crowded {
         gpu: &Gpu,
         window: &RenderState,
         database: Arc<Database>,
-        task: Task,
+        task: LocomotionTask,
         envs: usize,
         watch: Arc<Watch>,
     ) -> Crowded {
@@ -61,7 +62,8 @@ impl Crowded {
                 ui.centered_and_justified(|ui| ui.label("opening the worlds ..."));
                 return;
             }
-            let (scene, crowd) = (Scene::default(), self.crowd.as_ref());
+            let scene = Scene::default();
+            let crowd = self.crowd.as_ref().map(|crowd| crowd as &dyn Drawable);
             self.screen.show(ui, &scene, crowd, &mut self.camera, false);
         });
         let next = self.pace.next(&self.screen.renderer.queue);

@@ -5,8 +5,8 @@ use super::watch::Crowded;
 use crate::gpu::Gpu;
 use crate::motion::database::Database;
 use crate::train::trainer::Watch;
-use crate::view::playthrough::Stage;
-use crate::env::locomotion::Task;
+use crate::view::playthrough::PlaythroughContext;
+use crate::env::locomotion::LocomotionTask;
 use anyhow::{Context, Result, anyhow};
 use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use eframe::{NativeOptions, egui};
@@ -65,8 +65,8 @@ pub fn shared(gpu: &Gpu) -> WgpuSetup {
 ///
 /// # Errors
 /// There is no display, a policy cannot be loaded, or the GPU was lost.
-pub fn play(gpu: &Gpu, title: &str, stage: Stage, choices: Vec<Choice>) -> Result<()> {
-    let viewer = |window: &RenderState| Viewer::new(gpu, window, stage, choices);
+pub fn play(gpu: &Gpu, title: &str, context: PlaythroughContext, choices: Vec<Choice>) -> Result<()> {
+    let viewer = |window: &RenderState| Viewer::new(gpu, window, context, choices);
     let over = Arc::new(AtomicBool::new(false));
     open(gpu, title, over, |window| Ok(Box::new(viewer(window)?)))
 }
@@ -78,7 +78,7 @@ pub fn play(gpu: &Gpu, title: &str, stage: Stage, choices: Vec<Choice>) -> Resul
 pub fn watch(
     gpu: &Gpu,
     database: Arc<Database>,
-    task: Task,
+    task: LocomotionTask,
     envs: usize,
     watch: Arc<Watch>,
     over: Arc<AtomicBool>,

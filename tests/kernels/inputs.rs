@@ -3,8 +3,8 @@
 use footwork::gpu::Gpu;
 use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 use footwork::kernels::rng::{gaussian, index_below, random4, uniform01};
-use footwork::motion::database::{ROW_STRIDE, RootMotion};
-use footwork::motion::features::FEATURE_DIM;
+use footwork::motion::database::RootMotion;
+use footwork::motion::features::{FEATURE_DIM, ROW_STRIDE};
 use std::ops::Range;
 
 /// What outputs hold before a kernel runs: what it leaves unwritten, or writes where it must not,

@@ -10,8 +10,7 @@ use footwork::kernels::locomotion::locomotion_layout::{CELLS, BASE_OBS_DIM, TARG
 use footwork::kernels::termination;
 use footwork::kernels::locomotion::observe;
 use footwork::kernels::locomotion::rasterize_maps::cell;
-use footwork::motion::database::ROW_STRIDE;
-use footwork::motion::features::POSE_DIM;
+use footwork::motion::features::{POSE_DIM, ROW_STRIDE};
 
 const FRAMES: usize = 500;
 

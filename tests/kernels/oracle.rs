@@ -1,7 +1,6 @@
 //! The nearest row by plain loops in f64, and what may differ from it.
 
-use footwork::motion::database::ROW_STRIDE;
-use footwork::motion::features::FEATURE_DIM;
+use footwork::motion::features::{FEATURE_DIM, ROW_STRIDE};
 use multiversion::multiversion;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -58,7 +57,7 @@ impl Oracle {
     /// their distances differ by at most g times their sum. Equal rows have equal distances in
     /// any arithmetic: of those the first must be found.
     #[track_caller]
-    pub fn judge(&self, what: &str, query: &[f32; ROW_STRIDE], found: u32, best: usize) {
+    pub fn check(&self, what: &str, query: &[f32; ROW_STRIDE], found: u32, best: usize) {
         let found = found as usize;
         let unit = f64::from(f32::EPSILON) / 2.0;
         let g = 12.0 * unit / (1.0 - 12.0 * unit);
@@ -68,7 +67,7 @@ impl Oracle {
         );
         assert_eq!(
             self.first[found], found,
-            "{what}: an equal row stands before"
+            "{what}: an equal row comes before"
         );
         let (far, near) = (self.squared(found, query), self.squared(best, query));
         let tie = far - near <= g * (far + near);

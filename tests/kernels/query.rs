@@ -6,8 +6,7 @@ use bytemuck::cast_slice;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
 use footwork::kernels::locomotion::build_query;
-use footwork::motion::database::ROW_STRIDE;
-use footwork::motion::features::{FEATURE_DIM, POSE_DIM, TRAJECTORY_DIM};
+use footwork::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
 
 const FRAMES: usize = 500;
 

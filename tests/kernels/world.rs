@@ -137,7 +137,7 @@ impl Pair {
                 .binary_search(&frame)
                 .expect("a candidate");
             self.oracle
-                .judge("a parted environment", &query, found as u32, best);
+                .check("a parted environment", &query, found as u32, best);
         }
     }
 

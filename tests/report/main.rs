@@ -10,7 +10,7 @@ mod picture;
 mod table;
 mod trajectories;
 
-use footwork::report::Error;
+use footwork::report::ReportError;
 use footwork::report::learning_curve::Point;
 use std::collections::HashSet;
 use std::fs;

@@ -1,9 +1,9 @@
 use crate::{DATABASE, Picture, gpu};
 use footwork::gpu::Device;
 use footwork::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
-use footwork::playback::Shown;
-use footwork::view::capsule_rig::Body;
-use footwork::view::scene::Block;
+use footwork::playback::PlacedFrame;
+use footwork::view::capsule_rig::CapsuleRig;
+use footwork::view::scene::Cuboid;
 use footwork::view::{Camera, Crowd, Renderer, Scene};
 use footwork::env::locomotion::{self, Obstacles, Plane, Setup, Task, World};
 use glam::Vec3;
@@ -34,13 +34,13 @@ fn one_of_a_crowd(device: Device) {
         world.step(action);
     }
     let state = world.snapshot().unwrap();
-    let shown = Shown {
+    let shown = PlacedFrame {
         frame: state.state_u32[state_u32::FRAME] as usize,
         at: [state.state_f32[state_f32::X], state.state_f32[state_f32::Z]],
         heading: [state.state_f32[state_f32::HEADING_X], state.state_f32[state_f32::HEADING_Z]],
     };
     let mut scene = Scene::default();
-    let body = Body::of(&DATABASE.skeleton, &DATABASE.roles);
+    let body = CapsuleRig::of(&DATABASE.skeleton, &DATABASE.roles);
     body.draw(&mut scene, &DATABASE.skeleton, &shown.pose(&DATABASE));
     let target = Vec3::new(state.state_f32[state_f32::TARGET_X], 0.0, state.state_f32[state_f32::TARGET_Z]);
     scene.capsule(
@@ -81,7 +81,7 @@ fn obstacles_of_a_crowd(device: Device) {
         let at = |field: usize| state.boxes[field * 100 + slot];
         let own = (slot as f32 * 0.618_034).fract();
         let height = 0.35 * (0.8 + 0.4 * own);
-        scene.blocks.push(Block {
+        scene.cuboids.push(Cuboid {
             centre: [at(boxes::X), 0.5 * height, at(boxes::Z)],
             half: [at(boxes::HALF_X), 0.5 * height, at(boxes::HALF_Z)],
             colour: [0.42, 0.34, 0.30].map(|value| value * (0.75 + 0.5 * own)),

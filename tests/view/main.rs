@@ -11,8 +11,8 @@ use footwork::motion::normalise::Weights;
 use footwork::motion::synthetic;
 use footwork::playback::player::Style;
 use footwork::train::controller::{Controller, Scripted};
-use footwork::view::playthrough::Stage;
-use footwork::view::{Camera, Canvas, Crowd, Renderer, Scene};
+use footwork::view::playthrough::PlaythroughContext;
+use footwork::view::{Camera, RenderTarget, Crowd, Renderer, Scene};
 use footwork::env::locomotion::Task;
 use std::sync::{Arc, LazyLock};
 
@@ -25,8 +25,8 @@ fn gpu() -> Gpu {
     Gpu::lavapipe().expect("lavapipe")
 }
 
-fn stage(task: Task) -> Stage {
-    Stage::new(DATABASE.clone(), task, Style::BEST)
+fn context(task: Task) -> PlaythroughContext {
+    PlaythroughContext::new(DATABASE.clone(), task, Style::BEST)
 }
 
 /// Walks straight to the target.
@@ -61,9 +61,9 @@ impl Picture {
         camera: &Camera,
         size: [u32; 2],
     ) -> Picture {
-        let canvas = Canvas::new(&renderer.device, size);
-        renderer.draw(scene, crowd, camera, &canvas);
-        let rgb = canvas.read(&renderer.device, &renderer.queue).unwrap();
+        let target = RenderTarget::new(&renderer.device, size);
+        renderer.draw(scene, crowd, camera, &target);
+        let rgb = target.read(&renderer.device, &renderer.queue).unwrap();
         Picture { size, rgb }
     }
 

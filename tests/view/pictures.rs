@@ -1,8 +1,8 @@
-use crate::{DATABASE, Picture, Walker, stage};
-use footwork::playback::Shown;
-use footwork::view::capsule_rig::Body;
+use crate::{DATABASE, Picture, Walker, context};
+use footwork::playback::PlacedFrame;
+use footwork::view::capsule_rig::CapsuleRig;
 use footwork::view::debug_draw::scene;
-use footwork::view::playthrough::Rollout;
+use footwork::view::playthrough::Playthrough;
 use footwork::view::{Camera, Scene};
 use footwork::env::locomotion::{Obstacles, Plane, Task};
 
@@ -18,13 +18,13 @@ fn orange([r, _, b]: [u8; 3]) -> bool {
 
 /// The body at a frame of the database, walking towards +z.
 fn body(frame: usize) -> Scene {
-    let shown = Shown {
+    let shown = PlacedFrame {
         frame,
         at: [0.0; 2],
         heading: [0.0, 1.0],
     };
     let mut scene = Scene::default();
-    let body = Body::of(&DATABASE.skeleton, &DATABASE.roles);
+    let body = CapsuleRig::of(&DATABASE.skeleton, &DATABASE.roles);
     body.draw(&mut scene, &DATABASE.skeleton, &shown.pose(&DATABASE));
     scene
 }
@@ -86,33 +86,33 @@ fn a_ball_casts_its_shadow_away_from_the_sun() {
 
 #[test]
 fn a_walk_looks_as_it_did() {
-    let stage = stage(Task::Plane(Plane::default()));
-    let mut rollout = Rollout::new(&stage, 2);
+    let context = context(Task::Plane(Plane::default()));
+    let mut playthrough = Playthrough::new(&context, 2);
     let mut camera = Camera {
         distance: 4.0,
         ..Camera::default()
     };
     for _ in 0..20 {
-        rollout.advance(&stage, &Walker).unwrap();
+        playthrough.advance(&context, &Walker).unwrap();
     }
-    camera.follow(rollout.shown.at, 1.0);
-    Picture::draw(&scene(&rollout, &stage), None, &camera, SIZE).must_be("walk");
+    camera.follow(playthrough.shown.at, 1.0);
+    Picture::draw(&scene(&playthrough, &context), None, &camera, SIZE).must_be("walk");
 }
 
 #[test]
 fn obstacles_look_as_they_did() {
-    let stage = stage(Task::Obstacles(Obstacles::FAST));
-    let mut rollout = Rollout::new(&stage, 1);
+    let context = context(Task::Obstacles(Obstacles::FAST));
+    let mut playthrough = Playthrough::new(&context, 1);
     let mut camera = Camera {
         distance: 9.0,
         pitch: 0.7,
         ..Camera::default()
     };
     for _ in 0..4 {
-        rollout.advance(&stage, &Walker).unwrap();
+        playthrough.advance(&context, &Walker).unwrap();
     }
-    camera.follow(rollout.shown.at, 1.0);
-    Picture::draw(&scene(&rollout, &stage), None, &camera, SIZE).must_be("obstacles");
+    camera.follow(playthrough.shown.at, 1.0);
+    Picture::draw(&scene(&playthrough, &context), None, &camera, SIZE).must_be("obstacles");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The window's contents, used as a person would.
 
-use crate::{DATABASE, Walker, gpu, stage};
+use crate::{DATABASE, Walker, gpu, context};
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -10,7 +10,7 @@ use footwork::motion::features::FRAMES_PER_STEP;
 use footwork::viewer::Viewer;
 use footwork::viewer::app::Choice;
 use footwork::viewer::window::shared;
-use footwork::view::playthrough::Rollout;
+use footwork::view::playthrough::Playthrough;
 use footwork::env::locomotion::{Obstacles, Plane, Task};
 
 fn plane() -> Task {
@@ -36,7 +36,7 @@ fn broken() -> Choice {
 fn open(task: Task, choices: Vec<Choice>) -> Harness<'static, Viewer> {
     let gpu = gpu();
     let window = create_render_state(shared(&gpu), Default::default());
-    let viewer = Viewer::new(&gpu, &window, stage(task), choices).unwrap();
+    let viewer = Viewer::new(&gpu, &window, context(task), choices).unwrap();
     let renderer = WgpuTestRenderer::from_render_state(window);
     let mut harness = Harness::builder()
         .with_size(Vec2::new(900.0, 560.0))
@@ -167,11 +167,11 @@ fn is_steered_by_keys() {
         let [x, z] = harness.state().shown().at;
         -(x * 0.7f32.sin() + z * 0.7f32.cos())
     };
-    let just_reset = away(&harness);
+    let began = away(&harness);
     harness.key_down(Key::W);
     harness.run_steps(120);
     harness.key_up(Key::W);
-    assert!(away(&harness) - just_reset > 1.5, "{}", away(&harness) - just_reset);
+    assert!(away(&harness) - began > 1.5, "{}", away(&harness) - began);
 }
 
 #[test]
@@ -207,24 +207,24 @@ fn tells_why_a_frame_was_chosen() {
 
 #[test]
 fn an_obstacle_moved_by_hand_is_seen() {
-    let stage = stage(Task::Obstacles(Obstacles::FAST));
-    let mut rollout = Rollout::new(&stage, 0);
-    let before = rollout.world.maps.clone();
-    rollout.move_obstacle(0, rollout.shown.at);
-    assert_ne!(rollout.world.maps, before);
+    let context = context(Task::Obstacles(Obstacles::FAST));
+    let mut playthrough = Playthrough::new(&context, 0);
+    let before = playthrough.world.maps.clone();
+    playthrough.move_obstacle(0, playthrough.shown.at);
+    assert_ne!(playthrough.world.maps, before);
 }
 
 #[test]
 fn a_target_set_on_arrival_stays() {
-    let stage = stage(plane());
-    let mut rollout = Rollout::new(&stage, 0);
-    rollout.set_target(rollout.shown.at);
-    rollout.advance(&stage, &Walker).unwrap();
-    let termination = rollout.step.as_ref().map(|step| step.termination);
+    let context = context(plane());
+    let mut playthrough = Playthrough::new(&context, 0);
+    playthrough.set_target(playthrough.shown.at);
+    playthrough.advance(&context, &Walker).unwrap();
+    let termination = playthrough.step.as_ref().map(|step| step.termination);
     assert_eq!(termination, Some(termination::SUCCESS));
-    rollout.set_target([40.0, 30.0]);
+    playthrough.set_target([40.0, 30.0]);
     for _ in 0..=FRAMES_PER_STEP {
-        rollout.advance(&stage, &Walker).unwrap();
+        playthrough.advance(&context, &Walker).unwrap();
     }
-    assert_eq!(rollout.target(), [40.0, 30.0]);
+    assert_eq!(playthrough.target(), [40.0, 30.0]);
 }

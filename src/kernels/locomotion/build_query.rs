@@ -4,8 +4,7 @@
 use super::locomotion_layout::state_u32;
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};
-use crate::motion::database::ROW_STRIDE;
-use crate::motion::features::{FEATURE_DIM, POSE_DIM, TRAJECTORY_DIM};
+use crate::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
 
 crate::shader_params! {
     pub struct Params for build_query {

@@ -2,8 +2,7 @@
 //! at compile time.
 
 use crate::gpu::shader::advance_and_reward::constants as wgsl;
-use crate::motion::database::ROW_STRIDE;
-use crate::motion::features::{FEATURE_DIM, FRAMES_PER_STEP, POSE_DIM, TRAJECTORY_DIM};
+use crate::motion::features::{FEATURE_DIM, FRAMES_PER_STEP, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
 
 /// What every task observes: the pose feature and the target in the character frame.
 pub const BASE_OBS_DIM: usize = POSE_DIM + 2;

@@ -3,8 +3,7 @@
 use super::locomotion_layout::{CELLS, FULL, BASE_OBS_DIM, TARGET_SCALE, MAP_WORDS, MAPS, ROW, state_f32, state_u32};
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};
-use crate::motion::database::ROW_STRIDE;
-use crate::motion::features::POSE_DIM;
+use crate::motion::features::{POSE_DIM, ROW_STRIDE};
 use crate::motion::character_frame::to_local;
 
 crate::shader_params! {

@@ -1,4 +1,4 @@
-//! The nearest of what was found for a query. Shader: `shaders/search/search_pick.wgsl`.
+//! The nearest of what was found for a query. Shader: `shaders/search/search_argmin.wgsl`.
 
 use super::search_index::LANES;
 use crate::gpu::kernel::groups;

@@ -2,10 +2,9 @@
 
 use crate::gpu::kernel::groups;
 use crate::gpu::{Buffer, Gpu, shader};
-use crate::motion::database::ROW_STRIDE;
-use crate::motion::features::FEATURE_DIM;
+use crate::motion::features::{FEATURE_DIM, ROW_STRIDE};
 
-/// What is searched.
+/// Sizes of a whole search.
 #[derive(Clone, Copy, Debug)]
 pub struct Params {
     /// Queries.
@@ -13,13 +12,13 @@ pub struct Params {
     pub candidates: u32,
     /// Rows a block of scores.
     pub block: u32,
-    /// Length of the longest row.
-    pub longest: f32,
+    /// Norm of the longest row.
+    pub max_norm: f32,
 }
 
 crate::shader_params! {
-    /// One launch of the shader.
-    pub struct Pass for search_exact {
+    /// One launch of the shader, which compares a run of blocks.
+    pub struct BlockRun for search_exact {
         /// Queries.
         pub count: u32,
         pub candidates: u32,
@@ -28,8 +27,8 @@ crate::shader_params! {
         /// The blocks compared: `first .. last`.
         pub first: u32,
         pub last: u32,
-        /// Length of the longest row.
-        pub longest: f32,
+        /// Norm of the longest row.
+        pub max_norm: f32,
     }
 }
 
@@ -38,17 +37,17 @@ crate::shader_params! {
 const ROWS: u32 = 1 << 17;
 
 impl Params {
-    /// The launches that together look at every block.
-    pub fn passes(self) -> impl Iterator<Item = Pass> {
+    /// The launches that together compare every block.
+    pub fn block_runs(self) -> impl Iterator<Item = BlockRun> {
         let blocks = self.candidates.div_ceil(self.block);
         let run = (ROWS / self.block).max(1);
-        (0..blocks).step_by(run as usize).map(move |first| Pass {
+        (0..blocks).step_by(run as usize).map(move |first| BlockRun {
             count: self.count,
             candidates: self.candidates,
             block: self.block,
             first,
             last: blocks.min(first + run),
-            longest: self.longest,
+            max_norm: self.max_norm,
         })
     }
 }
@@ -62,17 +61,17 @@ pub fn launch(
     params: &Params,
 ) {
     let groups = groups(&shader::SEARCH_EXACT, params.count as usize);
-    for pass in params.passes() {
+    for run in params.block_runs() {
         gpu.launch(
             &shader::SEARCH_EXACT,
             groups,
             &[rows, queries, score, matched],
-            &pass,
+            &run,
         );
     }
 }
 
-/// The plain form of every search: all rows, whatever their score.
+/// Compares all rows, whatever their score: the plain form of every search.
 pub fn twin(
     rows: &[[f32; ROW_STRIDE]],
     queries: &[[f32; ROW_STRIDE]],

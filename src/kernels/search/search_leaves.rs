@@ -1,21 +1,21 @@
-//! The nearest candidate among the leaves within reach. Shader: `shaders/search/search_leaves.wgsl`.
+//! The nearest candidate among the leaves that were not pruned. Shader: `shaders/search/search_leaves.wgsl`.
 
+use crate::motion::features::ROW_STRIDE;
 use super::search_index::{LANES, LEAF, offer};
 use super::search_exact::squared;
 use crate::gpu::{Buffer, Gpu, shader};
-use crate::motion::database::ROW_STRIDE;
 
 crate::shader_params! {
     pub struct Params for search_leaves {
         /// Queries.
         pub count: u32,
-        /// The leaves looked at: `first .. last`, `first` a multiple of 32.
+        /// The leaves searched: `first .. last`, `first` a multiple of 32.
         pub first: u32,
         pub last: u32,
         /// Bytes stand for numbers from `-range` to `range`.
         pub range: f32,
-        /// How far rounding to bytes moves a row at most.
-        pub blur: f32,
+        /// Distance by which rounding to bytes moves a row at most.
+        pub quantisation_error: f32,
     }
 }
 
@@ -26,10 +26,10 @@ const ACROSS: usize = 65_535;
 pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,
-    coarse: &Buffer<u32>,
+    quantised_rows: &Buffer<u32>,
     queries: &Buffer<f32>,
-    asked: &Buffer<f32>,
-    reach: &Buffer<u32>,
+    query_projection: &Buffer<f32>,
+    leaf_mask: &Buffer<u32>,
     distance: &Buffer<f32>,
     candidates: &Buffer<u32>,
     params: &Params,
@@ -39,19 +39,19 @@ pub fn launch(
     gpu.launch(
         &shader::SEARCH_LEAVES,
         [across as u32, workgroups.div_ceil(across) as u32, 1],
-        &[rows, coarse, queries, asked, reach, distance, candidates],
+        &[rows, quantised_rows, queries, query_projection, leaf_mask, distance, candidates],
         params,
     );
 }
 
-/// All rows of the leaves within reach, whatever their bytes.
+/// Compares all rows of the leaves in the mask, whatever their bytes.
 #[allow(clippy::too_many_arguments)]
 pub fn twin(
     rows: &[[f32; ROW_STRIDE]],
-    _coarse: &[[u8; ROW_STRIDE]],
+    _quantised_rows: &[[u8; ROW_STRIDE]],
     queries: &[[f32; ROW_STRIDE]],
-    _asked: &[f32],
-    reach: &[u32],
+    _query_projection: &[f32],
+    leaf_mask: &[u32],
     distance: &mut [f32],
     candidates: &mut [u32],
     params: &Params,
@@ -60,7 +60,7 @@ pub fn twin(
     for (at, query) in queries.iter().enumerate().take(count) {
         for leaf in first..params.last as usize {
             let (word, bit) = ((leaf - first) / 32, (leaf - first) % 32);
-            if reach[word * count + at] >> bit & 1 == 0 {
+            if leaf_mask[word * count + at] >> bit & 1 == 0 {
                 continue;
             }
             for (i, row) in rows[leaf * LEAF..][..LEAF].iter().enumerate() {

@@ -1,6 +1,6 @@
-//! The leaves of the index that may hold something nearer. Shader: `shaders/search/search_reach.wgsl`.
+//! The leaves of the index that may hold something nearer. Shader: `shaders/search/search_prune.wgsl`.
 
-use super::search_index::{ASKED, GROUP, LANES, block_of, bound, corners, limit, square};
+use super::search_index::{PROJECTION_LEN, GROUP, LANES, block_of, bound, corners, limit, square};
 use crate::gpu::shader::search_prune::constants;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::features::TRAJECTORY_DIM;
@@ -10,14 +10,14 @@ crate::shader_params! {
         /// Queries.
         pub count: u32,
         pub groups: u32,
-        /// The leaves looked at: `first .. last`, `first` a multiple of 32.
+        /// The leaves tested: `first .. last`, `first` a multiple of 32.
         pub first: u32,
         pub last: u32,
-        /// Leaves an invocation looks at, a multiple of 32.
+        /// Leaves an invocation tests, a multiple of 32.
         pub run: u32,
-        /// Of the database: word of `codes` where those of the groups begin.
+        /// Frames of the database: word of `distance_codes` where those of the groups begin.
         pub frames: u32,
-        /// Word of `codes` where those of the leaves begin; 0 if there are none.
+        /// Word of `distance_codes` where those of the leaves begin; 0 if there are none.
         pub leaf_codes: u32,
         /// Distance a unit of a byte.
         pub step: f32,
@@ -28,11 +28,11 @@ crate::shader_params! {
 pub fn launch(
     gpu: &Gpu,
     boxes: &Buffer<f32>,
-    codes: &Buffer<u32>,
+    distance_codes: &Buffer<u32>,
     shown: &Buffer<u32>,
-    asked: &Buffer<f32>,
+    query_projection: &Buffer<f32>,
     distance: &Buffer<f32>,
-    reach: &Buffer<u32>,
+    leaf_mask: &Buffer<u32>,
     params: &Params,
 ) {
     let workgroup = constants::LANES * constants::QUERIES;
@@ -40,40 +40,40 @@ pub fn launch(
     gpu.launch(
         &shader::SEARCH_PRUNE,
         [params.count.div_ceil(workgroup), runs, 1],
-        &[boxes, codes, shown, asked, distance, reach],
+        &[boxes, distance_codes, shown, query_projection, distance, leaf_mask],
         params,
     );
 }
 
 pub fn twin(
     boxes: &[[f32; TRAJECTORY_DIM]],
-    codes: &[u8],
+    distance_codes: &[u8],
     shown: &[u32],
-    asked: &[f32],
+    query_projection: &[f32],
     distance: &[f32],
-    reach: &mut [u32],
+    leaf_mask: &mut [u32],
     params: &Params,
 ) {
     let (count, groups) = (params.count as usize, params.groups as usize);
     let (first, last) = (params.first as usize, params.last as usize);
     for at in 0..count {
-        let turned = std::array::from_fn(|axis| asked[axis * count + at]);
+        let projected = std::array::from_fn(|axis| query_projection[axis * count + at]);
         let known = (0..LANES).map(|lane| distance[lane * count + at]);
-        let slack = asked[(ASKED - 1) * count + at];
+        let slack = query_projection[(PROJECTION_LEN - 1) * count + at];
         let limit = limit(known.fold(f32::MAX, f32::min), slack);
-        let place = block_of(codes, shown[at]) * groups;
+        let row = block_of(distance_codes, shown[at]) * groups;
         for word in 0..(last - first).div_ceil(32) {
-            reach[word * count + at] = 0;
+            leaf_mask[word * count + at] = 0;
         }
         for leaf in first..last {
             let code = match params.leaf_codes as usize {
-                0 => codes[4 * params.frames as usize + place + leaf / GROUP],
-                leaves => codes[4 * leaves + place * GROUP + leaf],
+                0 => distance_codes[4 * params.frames as usize + row + leaf / GROUP],
+                leaves => distance_codes[4 * leaves + row * GROUP + leaf],
             };
             let corners = corners(boxes, groups + leaf);
-            let within = bound(corners, &turned, square(code, params.step)) <= limit;
+            let within = bound(corners, &projected, square(code, params.step)) <= limit;
             let (word, bit) = ((leaf - first) / 32, (leaf - first) % 32);
-            reach[word * count + at] |= u32::from(within) << bit;
+            leaf_mask[word * count + at] |= u32::from(within) << bit;
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Scores the blocks of the database for every query, on software adapters.
-//! Shader: `shaders/search/search_wide.wgsl`.
+//! Shader: `shaders/search/search_score_lanes.wgsl`.
 
+use crate::motion::features::ROW_STRIDE;
 use crate::gpu::{Buffer, Gpu, shader};
-use crate::motion::database::ROW_STRIDE;
 
 crate::shader_params! {
     pub struct Params for search_score_lanes {

@@ -1,9 +1,10 @@
 //! Scores the blocks of the database for every query, on real GPUs.
-//! Shader: `shaders/search/search_tile.wgsl`; it answers what `search_wide` answers.
+//! Shader: `shaders/search/search_score_tiled.wgsl`; its scores are those of
+//! `search_score_lanes`.
 
+use crate::motion::features::ROW_STRIDE;
 use super::search_score_lanes;
 use crate::gpu::{Buffer, Gpu, shader};
-use crate::motion::database::ROW_STRIDE;
 
 crate::shader_params! {
     pub struct Params for search_score_tiled {

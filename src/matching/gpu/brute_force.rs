@@ -1,23 +1,23 @@
-//! The search on the GPU that looks at every row, by the kernels that suit the adapter.
+//! The search on the GPU over all rows, by the kernels that suit the adapter.
 
+use crate::motion::features::ROW_STRIDE;
 use crate::gpu::{Buffer, Gpu};
-use crate::kernels::search::{search_exact, search_score_tiled, search_score_lanes};
-use crate::motion::database::ROW_STRIDE;
+use crate::kernels::search::{search_exact, search_score_lanes, search_score_tiled};
 
 /// The rows on the device, and what the search needs for batches of one size.
-pub struct Brute {
+pub struct BruteForceSearch {
     /// `[candidates][ROW_STRIDE]`, with half squares: see [`search_score_lanes::with_half_square`].
     rows: Buffer<f32>,
     candidates: u32,
     count: u32,
     block: u32,
-    longest: f32,
+    max_norm: f32,
     /// `[blocks][count]`
     score: Buffer<f32>,
     matched: Buffer<u32>,
 }
 
-/// Rows a block at least: one tile of `search_tile`.
+/// Rows a block at least: one tile of `search_score_tiled`.
 const BLOCK: u32 = 64;
 /// Blocks at most: `search_exact` passes over all of them twice, and lavapipe silently stops after
 /// 65,535 loop iterations.
@@ -29,7 +29,7 @@ const RUN: u32 = 32;
 /// Rows an invocation scores at most, for lavapipe's limit again.
 const ROWS: u32 = 32_768;
 
-impl Brute {
+impl BruteForceSearch {
     /// For batches of `count` queries.
     pub fn new(gpu: &Gpu, rows: &[[f32; ROW_STRIDE]], count: usize) -> Self {
         let candidates = rows.len() as u32;
@@ -40,12 +40,12 @@ impl Brute {
             .iter()
             .map(|row| -2.0 * row[ROW_STRIDE - 1])
             .fold(0.0, f32::max);
-        Brute {
+        BruteForceSearch {
             rows: Buffer::from_slice(gpu, halved.as_flattened()),
             candidates,
             count: count as u32,
             block,
-            longest: square.sqrt(),
+            max_norm: square.sqrt(),
             score: Buffer::zeroed(gpu, candidates.div_ceil(block) as usize * count),
             matched: Buffer::zeroed(gpu, count),
         }
@@ -53,11 +53,11 @@ impl Brute {
 
     /// Nearest row of every query `[count][ROW_STRIDE]`, whose last number must be 1.
     pub fn nearest(&self, gpu: &Gpu, queries: &Buffer<f32>) -> &Buffer<u32> {
-        let Brute {
+        let BruteForceSearch {
             candidates,
             count,
             block,
-            longest,
+            max_norm,
             ..
         } = *self;
         let run = (ROWS / block).clamp(1, RUN);
@@ -82,7 +82,7 @@ impl Brute {
             count,
             candidates,
             block,
-            longest,
+            max_norm,
         };
         search_exact::launch(
             gpu,

@@ -1,63 +1,65 @@
-//! The search on the GPU by the index.
+//! The search on the GPU by the index, for software adapters.
 
 use crate::gpu::{Buffer, Gpu};
-use crate::kernels::search::search_index::{ASKED, GROUP, LANES};
-use crate::kernels::search::{search_leaves, search_seed, search_argmin, search_prune};
-use crate::matching::{Index, Packed};
+use super::packed_index::PackedIndex;
+use crate::kernels::search::search_index::{GROUP, LANES, PROJECTION_LEN};
+use crate::kernels::search::{search_argmin, search_leaves, search_prune, search_seed};
+use crate::matching::Index;
 
 /// The index on the device, and what the search needs for batches of one size.
-pub struct Indexed {
+pub struct IndexedSearch {
     rows: Buffer<f32>,
-    coarse: Buffer<u32>,
+    quantised_rows: Buffer<u32>,
     boxes: Buffer<f32>,
-    codes: Buffer<u32>,
-    /// `[ASKED][count]`
-    asked: Buffer<f32>,
+    distance_codes: Buffer<u32>,
+    /// `[PROJECTION_LEN][count]`
+    query_projection: Buffer<f32>,
     /// `[SLICE / 32][count]`
-    reach: Buffer<u32>,
+    leaf_mask: Buffer<u32>,
     /// `[LANES][count]`
     distance: Buffer<f32>,
     /// `[LANES][count]`
     candidates: Buffer<u32>,
     matched: Buffer<u32>,
-    near: search_seed::Params,
+    seed: search_seed::Params,
     leaf_codes: u32,
     range: f32,
-    blur: f32,
+    quantisation_error: f32,
 }
 
-/// Leaves between two looks at what is still within reach: fewer find more out of reach, more need
-/// fewer launches.
+/// Leaves pruned and compared at a time: with fewer, later ones are pruned by nearer rows; with more,
+/// there are fewer launches.
 const SLICE: u32 = 512;
-/// Leaves an invocation of `search_reach` looks at.
+/// Leaves an invocation of `search_prune` tests.
 const RUN: u32 = 256;
 
-impl Indexed {
+impl IndexedSearch {
     /// For batches of `count` queries.
     pub fn new(gpu: &Gpu, index: &Index, count: usize) -> Self {
-        let packed = Packed::of(index);
-        let codes: Vec<u32> = bytemuck::pod_collect_to_vec(&packed.codes);
-        let coarse: Vec<u32> = bytemuck::pod_collect_to_vec(packed.coarse.as_flattened());
-        Indexed {
+        let packed = PackedIndex::of(index);
+        let distance_codes: Vec<u32> = bytemuck::pod_collect_to_vec(&packed.distance_codes);
+        let quantised_rows: Vec<u32> =
+            bytemuck::pod_collect_to_vec(packed.quantised_rows.as_flattened());
+        IndexedSearch {
             rows: Buffer::from_slice(gpu, packed.rows.as_flattened()),
-            coarse: Buffer::from_slice(gpu, &coarse),
+            quantised_rows: Buffer::from_slice(gpu, &quantised_rows),
             boxes: Buffer::from_slice(gpu, packed.boxes.as_flattened()),
-            codes: Buffer::from_slice(gpu, &codes),
-            asked: Buffer::zeroed(gpu, ASKED * count),
-            reach: Buffer::zeroed(gpu, SLICE as usize / 32 * count),
+            distance_codes: Buffer::from_slice(gpu, &distance_codes),
+            query_projection: Buffer::zeroed(gpu, PROJECTION_LEN * count),
+            leaf_mask: Buffer::zeroed(gpu, SLICE as usize / 32 * count),
             distance: Buffer::zeroed(gpu, LANES * count),
             candidates: Buffer::zeroed(gpu, LANES * count),
             matched: Buffer::zeroed(gpu, count),
-            near: search_seed::Params {
+            seed: search_seed::Params {
                 count: count as u32,
                 groups: packed.groups,
                 frames: packed.frames,
                 step: packed.step,
-                longest: packed.longest,
+                max_norm: packed.max_norm,
             },
             leaf_codes: packed.leaf_codes,
             range: packed.range,
-            blur: packed.blur,
+            quantisation_error: packed.quantisation_error,
         }
     }
 
@@ -67,46 +69,46 @@ impl Indexed {
             gpu,
             &self.rows,
             &self.boxes,
-            &self.codes,
+            &self.distance_codes,
             shown,
             queries,
-            &self.asked,
+            &self.query_projection,
             &self.distance,
             &self.candidates,
-            &self.near,
+            &self.seed,
         );
-        let leaves = self.near.groups * GROUP as u32;
+        let leaves = self.seed.groups * GROUP as u32;
         for first in (0..leaves).step_by(SLICE as usize) {
             let last = leaves.min(first + SLICE);
-            self.reach(gpu, shown, first, last);
+            self.prune(gpu, shown, first, last);
             self.compare(gpu, queries, first, last);
         }
         let params = search_argmin::Params {
-            count: self.near.count,
+            count: self.seed.count,
         };
         let (distance, candidates) = (&self.distance, &self.candidates);
         search_argmin::launch(gpu, distance, candidates, &self.matched, &params);
         &self.matched
     }
 
-    fn reach(&self, gpu: &Gpu, shown: &Buffer<u32>, first: u32, last: u32) {
+    fn prune(&self, gpu: &Gpu, shown: &Buffer<u32>, first: u32, last: u32) {
         search_prune::launch(
             gpu,
             &self.boxes,
-            &self.codes,
+            &self.distance_codes,
             shown,
-            &self.asked,
+            &self.query_projection,
             &self.distance,
-            &self.reach,
+            &self.leaf_mask,
             &search_prune::Params {
-                count: self.near.count,
-                groups: self.near.groups,
+                count: self.seed.count,
+                groups: self.seed.groups,
                 first,
                 last,
                 run: RUN,
-                frames: self.near.frames,
+                frames: self.seed.frames,
                 leaf_codes: self.leaf_codes,
-                step: self.near.step,
+                step: self.seed.step,
             },
         );
     }
@@ -115,18 +117,18 @@ impl Indexed {
         search_leaves::launch(
             gpu,
             &self.rows,
-            &self.coarse,
+            &self.quantised_rows,
             queries,
-            &self.asked,
-            &self.reach,
+            &self.query_projection,
+            &self.leaf_mask,
             &self.distance,
             &self.candidates,
             &search_leaves::Params {
-                count: self.near.count,
+                count: self.seed.count,
                 first,
                 last,
                 range: self.range,
-                blur: self.blur,
+                quantisation_error: self.quantisation_error,
             },
         );
     }

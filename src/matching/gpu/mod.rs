@@ -3,24 +3,32 @@
 
 pub mod brute_force;
 pub mod indexed;
+pub mod packed_index;
 
+use super::MotionMatcher;
 use crate::gpu::{Buffer, Gpu};
-use brute_force::Brute;
-use indexed::Indexed;
-use crate::motion::database::Database;
+use brute_force::BruteForceSearch;
+use indexed::IndexedSearch;
 
-#[expect(clippy::large_enum_variant, reason = "one a world, never moved")]
-pub enum Search {
-    Indexed(Indexed),
-    Brute(Brute),
+/// The search on a GPU for batches of one size.
+#[expect(clippy::large_enum_variant, reason = "one a batch, never moved")]
+pub enum GpuSearch {
+    /// By the index: for software adapters.
+    Indexed(IndexedSearch),
+    /// Over all rows: for real GPUs.
+    BruteForce(BruteForceSearch),
 }
 
-impl Search {
-    /// For batches of `count` queries.
-    pub fn new(gpu: &Gpu, database: &Database, count: usize) -> Self {
+impl GpuSearch {
+    /// The search for batches of `count` queries.
+    pub fn new(gpu: &Gpu, matcher: &MotionMatcher, count: usize) -> Self {
         match gpu.software {
-            true => Search::Indexed(Indexed::new(gpu, &database.index(), count)),
-            false => Search::Brute(Brute::new(gpu, &database.rows(), count)),
+            true => GpuSearch::Indexed(IndexedSearch::new(gpu, &matcher.index, count)),
+            false => GpuSearch::BruteForce(BruteForceSearch::new(
+                gpu,
+                &matcher.database.rows(),
+                count,
+            )),
         }
     }
 
@@ -28,8 +36,8 @@ impl Search {
     /// pose is that of the frame `shown`.
     pub fn nearest(&self, gpu: &Gpu, shown: &Buffer<u32>, queries: &Buffer<f32>) -> &Buffer<u32> {
         match self {
-            Search::Indexed(search) => search.nearest(gpu, shown, queries),
-            Search::Brute(search) => search.nearest(gpu, queries),
+            GpuSearch::Indexed(search) => search.nearest(gpu, shown, queries),
+            GpuSearch::BruteForce(search) => search.nearest(gpu, queries),
         }
     }
 }

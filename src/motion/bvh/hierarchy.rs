@@ -1,6 +1,6 @@
 //! The first half of a BVH file: the tree of joints and their channels.
 
-use crate::motion::error::{Error, Result};
+use crate::motion::error::{MotionError, MotionResult};
 use crate::motion::skeleton::Skeleton;
 use glam::Vec3;
 use std::collections::HashSet;
@@ -32,8 +32,8 @@ enum Block {
 }
 
 /// The error of this file at this line (from 1).
-pub fn problem(path: &Path, line: usize, problem: impl Into<String>) -> Error {
-    Error::Bvh {
+pub fn problem(path: &Path, line: usize, problem: impl Into<String>) -> MotionError {
+    MotionError::Bvh {
         path: path.to_path_buf(),
         line,
         problem: problem.into(),
@@ -41,7 +41,7 @@ pub fn problem(path: &Path, line: usize, problem: impl Into<String>) -> Error {
 }
 
 /// A finite number of sane size. The bound keeps every later product of lengths finite.
-pub fn number(path: &Path, line: usize, word: &str) -> Result<f32> {
+pub fn number(path: &Path, line: usize, word: &str) -> MotionResult<f32> {
     match word.parse::<f32>() {
         Ok(value) if value.abs() < 1e9 => Ok(value),
         Ok(_) => Err(problem(
@@ -70,7 +70,7 @@ pub fn shorten(word: &str) -> String {
 
 /// Reads from HIERARCHY to MOTION. The open braces are a list, not a recursion, so that no
 /// depth of nesting can exhaust the stack.
-pub fn parse(text: &str, path: &Path) -> Result<Hierarchy> {
+pub fn parse(text: &str, path: &Path) -> MotionResult<Hierarchy> {
     let mut reader = Reader {
         words: Words::new(text),
         path,
@@ -106,7 +106,7 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn start(&mut self) -> Result<()> {
+    fn start(&mut self) -> MotionResult<()> {
         match self.words.next() {
             Some(word) if word.eq_ignore_ascii_case("HIERARCHY") => Ok(()),
             Some(word) => Err(self.fault(format!(
@@ -118,7 +118,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Takes one statement; true after MOTION.
-    fn step(&mut self) -> Result<bool> {
+    fn step(&mut self) -> MotionResult<bool> {
         let Some(word) = self.words.next() else {
             return Err(self.fault(format!(
                 "the file ends inside the hierarchy, {} braces still open and no MOTION; it is truncated",
@@ -153,7 +153,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn joint(&mut self) -> Result<()> {
+    fn joint(&mut self) -> MotionResult<()> {
         let name = self.words.name();
         if name.is_empty() {
             return Err(self.fault("a joint without a name"));
@@ -183,7 +183,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn end_site(&mut self, joint: usize) -> Result<()> {
+    fn end_site(&mut self, joint: usize) -> MotionResult<()> {
         // "Site", or a name that some exporters write in its place.
         self.words.name();
         self.brace()?;
@@ -194,7 +194,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn brace(&mut self) -> Result<()> {
+    fn brace(&mut self) -> MotionResult<()> {
         match self.words.next() {
             Some("{") => Ok(()),
             Some(word) => Err(self.fault(format!("expected '{{', found '{}'", shorten(word)))),
@@ -202,7 +202,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn offset(&mut self, block: Block) -> Result<()> {
+    fn offset(&mut self, block: Block) -> MotionResult<()> {
         let offset = Vec3::new(self.number()?, self.number()?, self.number()?);
         match block {
             Block::Joint(joint) => {
@@ -221,14 +221,14 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn number(&mut self) -> Result<f32> {
+    fn number(&mut self) -> MotionResult<f32> {
         match self.words.next() {
             Some(word) => number(self.path, self.words.line, word),
             None => Err(self.fault("expected a number, but the file ends here; it is truncated")),
         }
     }
 
-    fn take_channels(&mut self, joint: usize) -> Result<()> {
+    fn take_channels(&mut self, joint: usize) -> MotionResult<()> {
         if !self.channels[joint].is_empty() {
             return Err(self.fault("a second CHANNELS for one joint"));
         }
@@ -250,7 +250,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn channel(&mut self) -> Result<Channel> {
+    fn channel(&mut self) -> MotionResult<Channel> {
         let Some(word) = self.words.next() else {
             return Err(self.fault("expected a channel, but the file ends here; it is truncated"));
         };
@@ -268,7 +268,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn close(&mut self, block: Block) -> Result<()> {
+    fn close(&mut self, block: Block) -> MotionResult<()> {
         let placed = match block {
             Block::Joint(joint) => self.placed[joint],
             Block::End { placed, .. } => placed,
@@ -280,7 +280,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn fault(&self, what: impl Into<String>) -> Error {
+    fn fault(&self, what: impl Into<String>) -> MotionError {
         problem(self.path, self.words.line, what)
     }
 }

@@ -1,6 +1,6 @@
 //! From the text of a BVH file to a recording.
 
-use crate::motion::error::{Error, Result};
+use crate::motion::error::{MotionError, MotionResult};
 use super::Recording;
 use super::hierarchy::{self, Channel, Hierarchy, problem};
 use super::values::{self, Values};
@@ -20,12 +20,12 @@ const SLACK: f32 = 0.05;
 /// Reads a BVH file. Lengths stay in the file's unit, the rate is the file's own.
 ///
 /// Errors: an unreadable, too large, binary, truncated or malformed file, with the line.
-pub fn read(path: &Path) -> Result<Recording> {
-    let unreadable = |error| Error::Read {
+pub fn read(path: &Path) -> MotionResult<Recording> {
+    let unreadable = |error| MotionError::Read {
         path: path.to_path_buf(),
         error,
     };
-    let too_large = || Error::TooLarge {
+    let too_large = || MotionError::TooLarge {
         path: path.to_path_buf(),
         limit: MAX_BYTES,
     };
@@ -59,7 +59,7 @@ pub fn read(path: &Path) -> Result<Recording> {
 /// OFFSET. On joints other than the root, positions that stay put (within 5 % of the longest
 /// bone) give the bone as their mean. A root with a single child that does move against it (a
 /// "Reference" above the hips) is folded into that child. Any other moving bone is an error.
-pub fn parse(text: &str, path: &Path) -> Result<Recording> {
+pub fn parse(text: &str, path: &Path) -> MotionResult<Recording> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let hierarchy = hierarchy::parse(text, path)?;
     let end = hierarchy.end;
@@ -90,7 +90,7 @@ struct Motion {
 }
 
 impl Motion {
-    fn into_recording(self) -> std::result::Result<Recording, String> {
+    fn into_recording(self) -> Result<Recording, String> {
         let rigid = self.bones();
         let longest = rigid[1..].iter().map(|b| b.0.length()).fold(0.0, f32::max);
         let moving: Vec<usize> = (1..rigid.len())

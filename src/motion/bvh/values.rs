@@ -1,6 +1,6 @@
 //! The second half of a BVH file: how many frames, how fast, and their numbers.
 
-use crate::motion::error::Result;
+use crate::motion::error::MotionResult;
 use super::hierarchy::{number, problem, shorten};
 use std::path::Path;
 
@@ -19,7 +19,7 @@ pub struct Values {
 /// Reads what follows line `after` (from 1), the one that says MOTION. `width` is how many
 /// numbers make a frame. They may be wrapped over lines at will. Memory grows with the numbers
 /// that are there, never with the number of frames that the file claims.
-pub fn parse(text: &str, path: &Path, after: usize, width: usize) -> Result<Values> {
+pub fn parse(text: &str, path: &Path, after: usize, width: usize) -> MotionResult<Values> {
     let mut lines = (1..).zip(text.lines()).skip(after);
     let mut header = |key: &str| {
         let (line, text) = lines
@@ -64,7 +64,7 @@ pub fn parse(text: &str, path: &Path, after: usize, width: usize) -> Result<Valu
     })
 }
 
-fn count(path: &Path, line: usize, text: &str) -> Result<usize> {
+fn count(path: &Path, line: usize, text: &str) -> MotionResult<usize> {
     match text.parse() {
         Ok(0) => Err(problem(path, line, "zero frames: there is no motion in it")),
         Ok(frames) => Ok(frames),
@@ -76,7 +76,7 @@ fn count(path: &Path, line: usize, text: &str) -> Result<usize> {
     }
 }
 
-fn rate(path: &Path, line: usize, text: &str) -> Result<f32> {
+fn rate(path: &Path, line: usize, text: &str) -> MotionResult<f32> {
     let time = number(path, line, text)?;
     let rate = 1.0 / time;
     if time > 0.0 && RATES.contains(&rate) {
@@ -97,7 +97,7 @@ fn check_size(
     numbers: &[f32],
     frames: usize,
     width: usize,
-) -> Result<()> {
+) -> MotionResult<()> {
     let expected = frames as u128 * width as u128;
     let found = numbers.len();
     if expected == found as u128 {

@@ -1,7 +1,7 @@
 //! From a clip to a BVH file.
 
 use crate::motion::clip::Clip;
-use crate::motion::error::{Error, Result};
+use crate::motion::error::{MotionError, MotionResult};
 use glam::{DQuat, EulerRot, Vec3};
 use std::fmt::Write;
 use std::path::Path;
@@ -10,7 +10,7 @@ use std::path::Path;
 const CENTIMETRES: f32 = 100.0;
 
 /// Writes a clip as a BVH file in centimetres, whole or not at all. See [`to_text`].
-pub fn write(path: &Path, clip: &Clip) -> Result<()> {
+pub fn write(path: &Path, clip: &Clip) -> MotionResult<()> {
     let text = to_text(clip)?;
     Ok(crate::container::write_whole(path, text.as_bytes())?)
 }
@@ -20,8 +20,8 @@ pub fn write(path: &Path, clip: &Clip) -> Result<()> {
 /// Joints come depth first, so a skeleton in another order is read back in that one.
 ///
 /// Errors: numbers that are not finite, a rate of zero, names that BVH cannot hold.
-pub fn to_text(clip: &Clip) -> Result<String> {
-    check(clip).map_err(|problem| Error::Unwritable {
+pub fn to_text(clip: &Clip) -> MotionResult<String> {
+    check(clip).map_err(|problem| MotionError::Unwritable {
         clip: clip.name.clone(),
         problem,
     })?;
@@ -31,7 +31,7 @@ pub fn to_text(clip: &Clip) -> Result<String> {
     Ok(text)
 }
 
-fn check(clip: &Clip) -> std::result::Result<(), String> {
+fn check(clip: &Clip) -> Result<(), String> {
     let skeleton = &clip.skeleton;
     let bad_name = |name: &&String| {
         let plain: Vec<&str> = name.split_whitespace().collect();

@@ -1,7 +1,7 @@
 //! Where the levels of a curriculum begin, as in the paper's figure 5.
 
 use super::{LEFT, RIGHT, WIDTH};
-use crate::report::Error;
+use crate::report::ReportError;
 use crate::report::canvas::{Anchor, Canvas, text_width};
 use crate::report::chart::{self, Plot};
 
@@ -15,7 +15,7 @@ pub struct Level {
 }
 
 /// A dashed line where each level begins.
-pub fn draw_lines(canvas: &mut Canvas<'_>, plot: &Plot, levels: &[Level]) -> Result<(), Error> {
+pub fn draw_lines(canvas: &mut Canvas<'_>, plot: &Plot, levels: &[Level]) -> Result<(), ReportError> {
     for level in levels {
         if level.steps as f64 <= plot.x.max {
             let (x, _) = plot.at(level.steps as f64, plot.y.min);
@@ -48,19 +48,19 @@ impl Numbers {
     }
 
     /// The left and the right end of the text, in pixels.
-    fn ends(&self) -> Result<(f64, f64), Error> {
+    fn ends(&self) -> Result<(f64, f64), ReportError> {
         let half = text_width(&self.text(), chart::SMALL)? / 2.0;
         Ok((self.middle() - half, self.middle() + half))
     }
 
-    fn crowds(&self, next: &Self) -> Result<bool, Error> {
+    fn crowds(&self, next: &Self) -> Result<bool, ReportError> {
         const ROOM: f64 = 10.0;
         Ok(next.ends()?.0 < self.ends()?.1 + ROOM)
     }
 }
 
 /// Puts each level's number above its line; neighbours without room for two become one.
-pub fn place_numbers(levels: &[Level], end: f64) -> Result<Vec<Numbers>, Error> {
+pub fn place_numbers(levels: &[Level], end: f64) -> Result<Vec<Numbers>, ReportError> {
     let mut sorted: Vec<&Level> = levels.iter().collect();
     sorted.retain(|level| level.steps as f64 <= end);
     sorted.sort_by_key(|level| (level.steps, level.level));
@@ -85,7 +85,7 @@ pub fn place_numbers(levels: &[Level], end: f64) -> Result<Vec<Numbers>, Error> 
 }
 
 /// Writes the numbers at height `y`, and what they are before them.
-pub fn draw_numbers(canvas: &mut Canvas<'_>, numbers: &[Numbers], y: f64) -> Result<(), Error> {
+pub fn draw_numbers(canvas: &mut Canvas<'_>, numbers: &[Numbers], y: f64) -> Result<(), ReportError> {
     if numbers.is_empty() {
         return Ok(());
     }

@@ -1,7 +1,7 @@
 //! What the symbols in the panels stand for.
 
 use super::{OBSTACLE, SEEN, WAY, draw_arrow, draw_outline, draw_rectangle};
-use crate::report::Error;
+use crate::report::ReportError;
 use crate::report::canvas::{Anchor, Canvas, Pixel, text_width};
 use crate::report::{chart, ground};
 
@@ -32,9 +32,9 @@ const LEGEND: [(Symbol, &str); 6] = [
 ];
 
 /// Left end, in pixels, and row of each item, no row wider than `room`.
-pub fn place(room: f64) -> Result<Vec<(f64, usize)>, Error> {
+pub fn place(room: f64) -> Result<Vec<(f64, usize)>, ReportError> {
     let width = |(_, text): &(Symbol, &str)| Ok(SYMBOL + text_width(text, chart::SMALL)?);
-    let widths: Vec<f64> = LEGEND.iter().map(width).collect::<Result<_, Error>>()?;
+    let widths: Vec<f64> = LEGEND.iter().map(width).collect::<Result<_, ReportError>>()?;
     Ok(chart::flow(&widths, GAP, room))
 }
 
@@ -49,7 +49,7 @@ pub fn draw(
     canvas: &mut Canvas<'_>,
     places: &[(f64, usize)],
     (left, top): Pixel,
-) -> Result<(), Error> {
+) -> Result<(), ReportError> {
     for (item, &(right, row)) in LEGEND.iter().zip(places) {
         let at = (left + right, top + (row as f64 + 0.5) * ROW);
         draw_item(canvas, item, at)?;
@@ -62,7 +62,7 @@ fn draw_item(
     canvas: &mut Canvas<'_>,
     (symbol, text): &(Symbol, &str),
     (left, y): Pixel,
-) -> Result<(), Error> {
+) -> Result<(), ReportError> {
     let (middle, right) = (left + 18.0, left + 36.0);
     match symbol {
         Symbol::Obstacle => {

@@ -1,7 +1,7 @@
 //! The obstacle maps beside an episode's panel.
 
 use super::{CELLS, Episode, Map, OBSTACLE, SEEN, draw_arrow, draw_outline, seconds};
-use crate::report::Error;
+use crate::report::ReportError;
 use crate::report::canvas::{Anchor, Canvas, Pixel};
 use crate::report::chart;
 
@@ -15,7 +15,7 @@ pub fn draw(
     episode: &Episode,
     step_s: f32,
     (left, top): Pixel,
-) -> Result<(), Error> {
+) -> Result<(), ReportError> {
     let now = episode.seen;
     let titles = [
         format!("seen at {}", seconds(now, step_s)),
@@ -32,7 +32,7 @@ pub fn draw(
     canvas.text(text, at, Anchor::Centre, chart::SMALL, chart::MUTED)
 }
 
-fn draw_map(canvas: &mut Canvas<'_>, map: &Map, (left, top): Pixel) -> Result<(), Error> {
+fn draw_map(canvas: &mut Canvas<'_>, map: &Map, (left, top): Pixel) -> Result<(), ReportError> {
     let (right, bottom) = (left + SIDE, top + SIDE);
     for (row, cells) in map.iter().enumerate() {
         for (column, &cell) in cells.iter().enumerate().filter(|&(_, &cell)| cell > 0) {

@@ -1,24 +1,24 @@
 //! The four kernels of the search by the index, each against its twin on the twin's inputs.
-//! Bars: `search_near` may prefer another group where two bounds are equal but for rounding, and its
-//! row is the nearest of that group all the same; `search_reach` may differ at leaves whose bound is
-//! the limit but for rounding; `search_leaves` finds the twin's candidates, and `search_pick` gives the
+//! Bars: `search_seed` may prefer another group where two bounds are equal but for rounding, and its
+//! row is the nearest of that group all the same; `search_prune` may differ at leaves whose bound is
+//! the limit but for rounding; `search_leaves` finds the twin's candidates, and `search_argmin` gives the
 //! twin's bits. Distances have eight roundings: adapters may or may not fuse products into sums.
 
 use crate::checked;
 use crate::inputs::{Draw, POISON, POISON_WHOLE, SIZES, close, gpu};
 use bytemuck::cast_slice;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::search::search_index::{ASKED, GROUP, LANES};
+use footwork::kernels::search::search_index::{PROJECTION_LEN, GROUP, LANES};
 use footwork::kernels::search::search_exact::squared;
 use footwork::kernels::search::{search_leaves, search_seed, search_argmin, search_prune};
-use footwork::motion::database::ROW_STRIDE;
-use footwork::motion::features::{FEATURE_DIM, POSE_DIM, TRAJECTORY_DIM};
-use footwork::matching::{Index, MEMORY, Packed};
+use footwork::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
+use footwork::matching::gpu::packed_index::PackedIndex;
+use footwork::matching::{DEFAULT_TABLE_BYTES, Index};
 
 const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
 struct Case {
-    packed: Packed,
+    packed: PackedIndex,
     shown: Vec<u32>,
     queries: Vec<[f32; ROW_STRIDE]>,
 }
@@ -26,7 +26,7 @@ struct Case {
 /// What the kernels hand on.
 #[derive(Clone)]
 struct Known {
-    asked: Vec<f32>,
+    query_projection: Vec<f32>,
     distance: Vec<f32>,
     candidates: Vec<u32>,
 }
@@ -49,7 +49,7 @@ impl Case {
         };
         Case {
             queries: shown.iter().map(query).collect(),
-            packed: Packed::of(&Index::build(&frames, &candidates, memory)),
+            packed: PackedIndex::of(&Index::build(&frames, &candidates, memory)),
             shown,
         }
     }
@@ -69,23 +69,23 @@ impl Case {
     fn poison(&self) -> Known {
         let lanes = LANES * self.count();
         Known {
-            asked: vec![POISON; ASKED * self.count()],
+            query_projection: vec![POISON; PROJECTION_LEN * self.count()],
             distance: vec![POISON; lanes],
             candidates: vec![POISON_WHOLE; lanes],
         }
     }
 
-    fn near(&self) -> search_seed::Params {
+    fn seed(&self) -> search_seed::Params {
         search_seed::Params {
             count: self.count() as u32,
             groups: self.packed.groups,
             frames: self.packed.frames,
             step: self.packed.step,
-            longest: self.packed.longest,
+            max_norm: self.packed.max_norm,
         }
     }
 
-    fn reach(&self) -> search_prune::Params {
+    fn prune(&self) -> search_prune::Params {
         search_prune::Params {
             count: self.count() as u32,
             groups: self.packed.groups,
@@ -104,7 +104,7 @@ impl Case {
             first: 0,
             last: self.leaves() as u32,
             range: self.packed.range,
-            blur: self.packed.blur,
+            quantisation_error: self.packed.quantisation_error,
         }
     }
 
@@ -112,27 +112,27 @@ impl Case {
         &self.packed.boxes
     }
 
-    fn near_twin(&self) -> Known {
+    fn seed_twin(&self) -> Known {
         let mut known = self.poison();
         search_seed::twin(
             &self.packed.rows,
             self.boxes(),
-            &self.packed.codes,
+            &self.packed.distance_codes,
             &self.shown,
             &self.queries,
-            &mut known.asked,
+            &mut known.query_projection,
             &mut known.distance,
             &mut known.candidates,
-            &self.near(),
+            &self.seed(),
         );
         known
     }
 
-    fn near_agrees(&self, twin: &Known, got: &Known) {
+    fn seed_agrees(&self, twin: &Known, got: &Known) {
         let count = self.count();
-        close("asked", &got.asked, &twin.asked, |i| match i / count {
-            axis if axis < TRAJECTORY_DIM => twin.asked[12 * count + i % count],
-            _ => 1e-5 * twin.asked[i],
+        close("query_projection", &got.query_projection, &twin.query_projection, |i| match i / count {
+            axis if axis < TRAJECTORY_DIM => twin.query_projection[12 * count + i % count],
+            _ => 1e-5 * twin.query_projection[i],
         });
         let mut others = 0;
         for at in 0..count {
@@ -149,10 +149,10 @@ impl Case {
         assert!(others * 100 <= count, "{others} of {count}");
     }
 
-    fn near_shader_agrees(&self, twin: &Known) {
+    fn seed_shader_agrees(&self, twin: &Known) {
         let gpu = gpu();
         let known = self.poison();
-        let asked = Buffer::from_slice(&gpu, &known.asked);
+        let query_projection = Buffer::from_slice(&gpu, &known.query_projection);
         let distance = Buffer::from_slice(&gpu, &known.distance);
         let candidates = Buffer::from_slice(&gpu, &known.candidates);
         search_seed::launch(
@@ -162,116 +162,116 @@ impl Case {
             &self.codes(&gpu),
             &Buffer::from_slice(&gpu, &self.shown),
             &Buffer::from_slice(&gpu, self.queries.as_flattened()),
-            &asked,
+            &query_projection,
             &distance,
             &candidates,
-            &self.near(),
+            &self.seed(),
         );
         let got = Known {
-            asked: asked.read(&gpu).expect("numbers"),
+            query_projection: query_projection.read(&gpu).expect("numbers"),
             distance: distance.read(&gpu).expect("distances"),
             candidates: candidates.read(&gpu).expect("candidates"),
         };
-        self.near_agrees(twin, &got);
+        self.seed_agrees(twin, &got);
         let buffers: [&[u8]; 8] = [
             cast_slice(&self.packed.rows),
             cast_slice(self.boxes()),
-            &self.packed.codes,
+            &self.packed.distance_codes,
             cast_slice(&self.shown),
             cast_slice(&self.queries),
-            cast_slice(&known.asked),
+            cast_slice(&known.query_projection),
             cast_slice(&known.distance),
             cast_slice(&known.candidates),
         ];
         let groups = [self.count().div_ceil(32) as u32, 1, 1];
-        let checked = checked::run(&shader::SEARCH_SEED, groups, &buffers, &self.near());
+        let checked = checked::run(&shader::SEARCH_SEED, groups, &buffers, &self.seed());
         let got = Known {
-            asked: checked.of(5),
+            query_projection: checked.of(5),
             distance: checked.of(6),
             candidates: checked.of(7),
         };
-        self.near_agrees(twin, &got);
+        self.seed_agrees(twin, &got);
     }
 
     fn codes(&self, gpu: &footwork::gpu::Gpu) -> Buffer<u32> {
-        Buffer::from_slice(gpu, &bytemuck::pod_collect_to_vec(&self.packed.codes))
+        Buffer::from_slice(gpu, &bytemuck::pod_collect_to_vec(&self.packed.distance_codes))
     }
 
-    fn reach_twin(&self, known: &Known) -> Vec<u32> {
-        let mut reach = vec![POISON_WHOLE; self.words() * self.count()];
+    fn prune_twin(&self, known: &Known) -> Vec<u32> {
+        let mut leaf_mask = vec![POISON_WHOLE; self.words() * self.count()];
         search_prune::twin(
             self.boxes(),
-            &self.packed.codes,
+            &self.packed.distance_codes,
             &self.shown,
-            &known.asked,
+            &known.query_projection,
             &known.distance,
-            &mut reach,
-            &self.reach(),
+            &mut leaf_mask,
+            &self.prune(),
         );
-        reach
+        leaf_mask
     }
 
     /// All but one leaf in ten thousand, which may lie at the limit.
-    fn reach_agrees(&self, twin: &[u32], got: &[u32]) {
+    fn prune_agrees(&self, twin: &[u32], got: &[u32]) {
         let differ = twin.iter().zip(got).map(|(t, g)| (t ^ g).count_ones());
         let (differ, all) = (differ.sum::<u32>(), self.leaves() * self.count());
         assert!(differ as usize <= all / 10_000, "{differ} of {all}");
     }
 
-    fn reach_shader_agrees(&self, known: &Known, twin: &[u32]) {
+    fn prune_shader_agrees(&self, known: &Known, twin: &[u32]) {
         let gpu = gpu();
         let poison = vec![POISON_WHOLE; twin.len()];
-        let reach = Buffer::from_slice(&gpu, &poison);
+        let leaf_mask = Buffer::from_slice(&gpu, &poison);
         search_prune::launch(
             &gpu,
             &Buffer::from_slice(&gpu, self.boxes().as_flattened()),
             &self.codes(&gpu),
             &Buffer::from_slice(&gpu, &self.shown),
-            &Buffer::from_slice(&gpu, &known.asked),
+            &Buffer::from_slice(&gpu, &known.query_projection),
             &Buffer::from_slice(&gpu, &known.distance),
-            &reach,
-            &self.reach(),
+            &leaf_mask,
+            &self.prune(),
         );
-        self.reach_agrees(twin, &reach.read(&gpu).expect("bits"));
+        self.prune_agrees(twin, &leaf_mask.read(&gpu).expect("bits"));
         let buffers: [&[u8]; 6] = [
             cast_slice(self.boxes()),
-            &self.packed.codes,
+            &self.packed.distance_codes,
             cast_slice(&self.shown),
-            cast_slice(&known.asked),
+            cast_slice(&known.query_projection),
             cast_slice(&known.distance),
             cast_slice(&poison),
         ];
         let runs = self.leaves().div_ceil(64) as u32;
         let groups = [self.count().div_ceil(128) as u32, runs, 1];
-        let checked = checked::run(&shader::SEARCH_PRUNE, groups, &buffers, &self.reach());
-        self.reach_agrees(twin, &checked.of::<u32>(5));
+        let checked = checked::run(&shader::SEARCH_PRUNE, groups, &buffers, &self.prune());
+        self.prune_agrees(twin, &checked.of::<u32>(5));
     }
 
-    fn leaves_twin(&self, known: &mut Known, reach: &[u32]) {
+    fn leaves_twin(&self, known: &mut Known, leaf_mask: &[u32]) {
         search_leaves::twin(
             &self.packed.rows,
-            &self.packed.coarse,
+            &self.packed.quantised_rows,
             &self.queries,
-            &known.asked,
-            reach,
+            &known.query_projection,
+            leaf_mask,
             &mut known.distance,
             &mut known.candidates,
             &self.leaf(),
         );
     }
 
-    fn leaves_shader_agrees(&self, known: &Known, reach: &[u32], twin: &Known) {
+    fn leaves_shader_agrees(&self, known: &Known, leaf_mask: &[u32], twin: &Known) {
         let gpu = gpu();
-        let coarse = bytemuck::pod_collect_to_vec(&self.packed.coarse);
+        let quantised_rows = bytemuck::pod_collect_to_vec(&self.packed.quantised_rows);
         let distance = Buffer::from_slice(&gpu, &known.distance);
         let candidates = Buffer::from_slice(&gpu, &known.candidates);
         search_leaves::launch(
             &gpu,
             &Buffer::from_slice(&gpu, self.packed.rows.as_flattened()),
-            &Buffer::from_slice(&gpu, &coarse),
+            &Buffer::from_slice(&gpu, &quantised_rows),
             &Buffer::from_slice(&gpu, self.queries.as_flattened()),
-            &Buffer::from_slice(&gpu, &known.asked),
-            &Buffer::from_slice(&gpu, reach),
+            &Buffer::from_slice(&gpu, &known.query_projection),
+            &Buffer::from_slice(&gpu, leaf_mask),
             &distance,
             &candidates,
             &self.leaf(),
@@ -285,10 +285,10 @@ impl Case {
         assert_eq!(candidates.read(&gpu).expect("candidates"), twin.candidates);
         let buffers: [&[u8]; 7] = [
             cast_slice(&self.packed.rows),
-            cast_slice(&self.packed.coarse),
+            cast_slice(&self.packed.quantised_rows),
             cast_slice(&self.queries),
-            cast_slice(&known.asked),
-            cast_slice(reach),
+            cast_slice(&known.query_projection),
+            cast_slice(leaf_mask),
             cast_slice(&known.distance),
             cast_slice(&known.candidates),
         ];
@@ -298,7 +298,7 @@ impl Case {
         assert_eq!(checked.of::<u32>(6), twin.candidates);
     }
 
-    fn pick_agrees(&self, known: &Known) {
+    fn argmin_agrees(&self, known: &Known) {
         let gpu = gpu();
         let count = self.count();
         let params = search_argmin::Params {
@@ -331,16 +331,16 @@ impl Case {
 #[test]
 fn each_agrees_with_its_twin() {
     for (seed, count) in (0..).zip(SIZES) {
-        for (rows, memory) in [(1, MEMORY), (300, MEMORY), (3000, 0), (9000, MEMORY)] {
+        for (rows, memory) in [(1, DEFAULT_TABLE_BYTES), (300, DEFAULT_TABLE_BYTES), (3000, 0), (9000, DEFAULT_TABLE_BYTES)] {
             let case = Case::new(count, rows, memory, seed);
-            let first = case.near_twin();
-            case.near_shader_agrees(&first);
-            let reach = case.reach_twin(&first);
-            case.reach_shader_agrees(&first, &reach);
+            let first = case.seed_twin();
+            case.seed_shader_agrees(&first);
+            let leaf_mask = case.prune_twin(&first);
+            case.prune_shader_agrees(&first, &leaf_mask);
             let mut last = first.clone();
-            case.leaves_twin(&mut last, &reach);
-            case.leaves_shader_agrees(&first, &reach, &last);
-            case.pick_agrees(&last);
+            case.leaves_twin(&mut last, &leaf_mask);
+            case.leaves_shader_agrees(&first, &leaf_mask, &last);
+            case.argmin_agrees(&last);
         }
     }
 }
@@ -348,10 +348,10 @@ fn each_agrees_with_its_twin() {
 /// Bounds never exclude the nearest row: what the twins find together is what comparing all finds.
 #[test]
 fn the_twins_together_find_the_nearest() {
-    let case = Case::new(500, 9000, MEMORY, 9);
-    let mut known = case.near_twin();
-    let reach = case.reach_twin(&known);
-    case.leaves_twin(&mut known, &reach);
+    let case = Case::new(500, 9000, DEFAULT_TABLE_BYTES, 9);
+    let mut known = case.seed_twin();
+    let leaf_mask = case.prune_twin(&known);
+    case.leaves_twin(&mut known, &leaf_mask);
     for (at, query) in case.queries.iter().enumerate() {
         let each = case.packed.rows.iter();
         let of = |row: &[f32; ROW_STRIDE]| (squared(row, query), row[FEATURE_DIM] as u32);
@@ -364,6 +364,6 @@ fn the_twins_together_find_the_nearest() {
             .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         assert_eq!(found, best);
     }
-    let within: u32 = reach.iter().map(|word| word.count_ones()).sum();
+    let within: u32 = leaf_mask.iter().map(|word| word.count_ones()).sum();
     assert!((within as usize) < case.leaves() * case.count());
 }

@@ -1,15 +1,15 @@
-// The index of the search (src/search) as shaders read it: groups of sixteen leaves of sixteen rows,
+// The index of the search (src/matching) as shaders read it: groups of sixteen leaves of sixteen rows,
 // and for each group and leaf a box along the principal axes around its trajectories.
 
 const LEAF = 16u;   // rows a leaf
 const GROUP = 16u;  // leaves a group
 const CORNERS = 6u; // vec4s a box: least along each axis, greatest along each
-const PCA_AXES = 6u;    // boxes in whose place the axes lie, before all others
-const ASKED = 13u;  // numbers kept of a query: along the 12 axes, and its slack
+const PCA_BOXES = 6u; // boxes whose space the axes take, before all others
+const PROJECTION_LEN = 13u; // numbers kept of a query: along the 12 axes, and its slack
 const LANES = 8u;   // lavapipe's; so many invocations compare a query's rows, each with a result of its own
 const FAR = 3.4e38;
 
-// Bounds are widened by what rounding can do to them: 12 u |q| an axis for the turn (Higham, Accuracy
+// Bounds are widened by what rounding can do to them: 12 u |q| an axis for the projection (Higham, Accuracy
 // and Stability, section 3.1), sqrt(12) times that in all, and a few roundings of the bound itself.
 const RELATIVE = 1.00001;
 const SLACK = 4e-6;
@@ -17,7 +17,7 @@ const SLACK = 4e-6;
 struct Box { low_a: vec4f, low_b: vec4f, low_c: vec4f, high_a: vec4f, high_b: vec4f, high_c: vec4f }
 
 // Four trajectories along the axes.
-struct Turned {
+struct Projected {
     a: vec4f, b: vec4f, c: vec4f, d: vec4f, e: vec4f, f: vec4f,
     g: vec4f, h: vec4f, i: vec4f, j: vec4f, k: vec4f, l: vec4f,
 }
@@ -28,7 +28,7 @@ fn add_outside(low: f32, high: f32, at: vec4f, sum: vec4f) -> vec4f {
 }
 
 // Squared distances of four trajectories to a box, on top of what is known of their poses.
-fn bounds(box: Box, t: Turned, poses: vec4f) -> vec4f {
+fn bounds(box: Box, t: Projected, poses: vec4f) -> vec4f {
     var sum = add_outside(box.low_a.x, box.high_a.x, t.a, poses);
     sum = add_outside(box.low_a.y, box.high_a.y, t.b, sum);
     sum = add_outside(box.low_a.z, box.high_a.z, t.c, sum);
@@ -49,7 +49,7 @@ fn squares(codes: vec4u, step: f32) -> vec4f {
     return distance * distance;
 }
 
-// What lies beyond this bound is neither nearer nor as near as something at this squared distance.
+// Bound beyond which nothing is nearer than this squared distance, or as near.
 fn limit_of(squared: f32, slack: f32) -> f32 {
     let length = fma(sqrt(squared), RELATIVE, slack);
     return select(length * length, FAR, squared >= 1e37);

@@ -1,6 +1,6 @@
-//! Oracle, bar and inputs: those of `search_wide`.
+//! Oracle, bar and inputs: those of `search_score_lanes`.
 
-use crate::search_wide::{Case, SHAPES};
+use super::search_score_lanes::{Case, SHAPES};
 
 #[test]
 fn agrees_with_its_twin_and_the_oracle() {

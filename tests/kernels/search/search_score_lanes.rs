@@ -1,14 +1,14 @@
 //! Oracle: the largest q.r - |r|^2 / 2 of every block in f64, of rows as the shader reads them.
-//! Bar, for `search_wide`, `search_tile` and their twin: g(28) = 28 u / (1 - 28 u) times the
+//! Bar, for `search_score_lanes`, `search_score_tiled` and their twin: g(28) = 28 u / (1 - 28 u) times the
 //! largest sum of absolute products, u = 2^-24 (Higham, section 3.1): what `search_exact` allows.
 
+use footwork::motion::features::ROW_STRIDE;
 use crate::checked::{self, Outcome};
 use crate::inputs::{Draw, POISON, close, gpu};
 use bytemuck::cast_slice;
 use footwork::gpu::shader::Shader;
 use footwork::gpu::{Buffer, shader};
 use footwork::kernels::search::{search_score_tiled, search_score_lanes};
-use footwork::motion::database::ROW_STRIDE;
 
 /// Queries, rows, rows a block and blocks an invocation or workgroup.
 pub const SHAPES: [[usize; 4]; 11] = [

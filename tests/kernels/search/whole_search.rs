@@ -1,29 +1,28 @@
 //! Whole searches, on the CPU and in both forms on the GPU.
 //! Oracle: plain loops in f64, and `search_exact::twin` for the CPU. Bar: no mismatch beyond
-//! proven ties, see `Oracle::judge`; index and distance of the CPU equal the twin's bit for bit.
+//! proven ties, see `Oracle::check`; index and distance of the CPU equal the twin's bit for bit.
 
 use crate::inputs::{Draw, gpu};
 use crate::oracle::Oracle;
 use footwork::gpu::{Buffer, Gpu};
 use footwork::kernels::search::search_exact;
-use footwork::motion::database::ROW_STRIDE;
-use footwork::motion::features::{FEATURE_DIM, POSE_DIM};
+use footwork::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE};
 use footwork::motion::normalise::Weights;
-use footwork::matching::{Index, MEMORY};
+use footwork::matching::{DEFAULT_TABLE_BYTES, Index};
 use footwork::train::data;
-use footwork::matching::gpu::brute_force::Brute;
-use footwork::matching::gpu::indexed::Indexed as IndexedOnGpu;
+use footwork::matching::gpu::brute_force::BruteForceSearch;
+use footwork::matching::gpu::indexed::IndexedSearch;
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
 type Rows = Vec<[f32; ROW_STRIDE]>;
 
-/// Queries of each kind, those put to `search_tile` (slow on lavapipe) and to the slow twin.
+/// Queries of each kind, those put to `search_score_tiled` (slow on lavapipe) and to the slow twin.
 const ALL: usize = 10_000;
-const BY_TILE: usize = 1_000;
+const BY_TILED: usize = 1_000;
 const BY_TWIN: usize = 100;
 
-/// Queries with the rows they are put to and the oracle's answers.
+/// Queries with the rows they are put to and the oracle's results.
 struct Kind {
     name: &'static str,
     data: &'static Data,
@@ -66,7 +65,7 @@ static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| {
     let rows = &SYNTHETIC.rows;
     let on_policy = |draw: &mut Draw, i: usize| {
         let (mut query, future) = (rows[draw.below(rows.len())], rows[draw.below(rows.len())]);
-        // From the future of another row to the wild asking of a new policy.
+        // From the future of another row to the wild queries of a new policy.
         let noise = [0.1, 0.3, 1.0, 3.0][i % 4];
         for d in POSE_DIM..FEATURE_DIM {
             query[d] = future[d] + noise * draw.normal();
@@ -105,13 +104,13 @@ impl Kind {
         }
     }
 
-    /// Judges answers to the first queries, and counts those that are ties.
-    fn judge(&self, form: &str, found: &[u32]) {
+    /// Checks the results of the first queries, and counts those that are ties.
+    fn check(&self, form: &str, found: &[u32]) {
         let mut ties = 0;
         for (at, &found) in found.iter().enumerate() {
             let what = format!("{form}, {} query {at}", self.name);
             let (query, best) = (&self.queries[at], self.best[at]);
-            self.data.oracle.judge(&what, query, found, best);
+            self.data.oracle.check(&what, query, found, best);
             ties += usize::from(found as usize != best);
         }
         println!("{form}, {}: {ties} ties of {}", self.name, found.len());
@@ -124,22 +123,22 @@ enum Form {
     /// For software adapters.
     Index,
     /// Among all rows, the kernels for software adapters.
-    Wide,
+    Lanes,
     /// Among all rows, those for real ones.
-    Tile,
+    Tiled,
 }
 
-const FORMS: [Form; 3] = [Form::Index, Form::Wide, Form::Tile];
+const FORMS: [Form; 3] = [Form::Index, Form::Lanes, Form::Tiled];
 
 fn on_gpu(form: Form, rows: &[[f32; ROW_STRIDE]], queries: &[[f32; ROW_STRIDE]]) -> Vec<u32> {
     let mut gpu = gpu();
-    gpu.software = form != Form::Tile;
+    gpu.software = form != Form::Tiled;
     let asked = Buffer::from_slice(&gpu, queries.as_flattened());
     if form == Form::Index {
-        let indexed = Indexed::new(rows, queries, MEMORY);
+        let indexed = Indexed::new(rows, queries, DEFAULT_TABLE_BYTES);
         return indexed.on_gpu(&gpu, &asked);
     }
-    let search = Brute::new(&gpu, rows, queries.len());
+    let search = BruteForceSearch::new(&gpu, rows, queries.len());
     search.nearest(&gpu, &asked).read(&gpu).expect("matches")
 }
 
@@ -149,7 +148,7 @@ fn by_twin(rows: &[[f32; ROW_STRIDE]], queries: &[[f32; ROW_STRIDE]]) -> Vec<u32
         count: queries.len() as u32,
         candidates: rows.len() as u32,
         block: 64,
-        longest: 0.0,
+        max_norm: 0.0,
     };
     search_exact::twin(rows, queries, &[], &mut found, &params);
     found
@@ -181,7 +180,7 @@ impl<'a> Indexed<'a> {
     }
 
     fn on_gpu(&self, gpu: &Gpu, queries: &Buffer<f32>) -> Vec<u32> {
-        let search = IndexedOnGpu::new(gpu, &self.index, self.queries.len());
+        let search = IndexedSearch::new(gpu, &self.index, self.queries.len());
         let shown = Buffer::from_slice(gpu, &self.frames());
         let found = search.nearest(gpu, &shown, queries);
         found.read(gpu).expect("matches")
@@ -196,7 +195,7 @@ impl<'a> Indexed<'a> {
 }
 
 fn on_cpu(rows: &[[f32; ROW_STRIDE]], queries: &[[f32; ROW_STRIDE]]) -> Vec<u32> {
-    Indexed::new(rows, queries, MEMORY).nearest_all()
+    Indexed::new(rows, queries, DEFAULT_TABLE_BYTES).nearest_all()
 }
 
 /// The index gives the twin's rows and distances, bit for bit, however little memory it is given, for one
@@ -204,7 +203,7 @@ fn on_cpu(rows: &[[f32; ROW_STRIDE]], queries: &[[f32; ROW_STRIDE]]) -> Vec<u32>
 #[track_caller]
 fn same_as_twin(rows: &[[f32; ROW_STRIDE]], queries: &[[f32; ROW_STRIDE]]) {
     let by_twin = by_twin(rows, queries);
-    for memory in [MEMORY, rows.len() * rows.len() / 1024, 0] {
+    for memory in [DEFAULT_TABLE_BYTES, rows.len() * rows.len() / 1024, 0] {
         let indexed = Indexed::new(rows, queries, memory);
         same(&indexed, &by_twin);
     }
@@ -231,7 +230,7 @@ fn same(indexed: &Indexed, by_twin: &[u32]) {
 #[test]
 fn the_cpu_finds_what_the_oracle_finds() {
     for kind in &*KINDS {
-        kind.judge("cpu", &on_cpu(&kind.data.rows, &kind.queries));
+        kind.check("cpu", &on_cpu(&kind.data.rows, &kind.queries));
         same_as_twin(&kind.data.rows, &kind.queries[..BY_TWIN]);
     }
 }
@@ -240,9 +239,9 @@ fn the_cpu_finds_what_the_oracle_finds() {
 fn all_forms_of_the_gpu_find_what_the_oracle_finds() {
     for form in FORMS {
         for kind in &*KINDS {
-            let count = if form == Form::Tile { BY_TILE } else { ALL };
+            let count = if form == Form::Tiled { BY_TILED } else { ALL };
             let found = on_gpu(form, &kind.data.rows, &kind.queries[..count]);
-            kind.judge(&format!("{form:?}"), &found);
+            kind.check(&format!("{form:?}"), &found);
         }
     }
 }
@@ -291,7 +290,7 @@ fn finds_a_winner_in_the_first_and_in_the_last_row() {
                 [best[0] as u32, best[1] as u32],
                 "{form:?}, {count} rows"
             );
-            oracle.judge(&format!("{form:?}"), &queries[2], found[2], best[2]);
+            oracle.check(&format!("{form:?}"), &queries[2], found[2], best[2]);
         }
     }
 }
@@ -333,7 +332,7 @@ fn finds_the_nearest_where_scores_cancel() {
     for form in FORMS {
         let found = on_gpu(form, &rows, &queries);
         for ((query, found), &best) in queries.iter().zip(found).zip(&best) {
-            oracle.judge(&format!("{form:?}"), query, found, best);
+            oracle.check(&format!("{form:?}"), query, found, best);
         }
     }
 }
@@ -346,10 +345,10 @@ fn finds_the_nearest_for_tens_of_thousands_of_queries_at_once() {
     let queries = Draw::new(11).rows(35_000, 1.0);
     let by_cpu = on_cpu(rows, &queries);
     assert!(on_gpu(Form::Index, rows, &queries) == by_cpu);
-    assert!(on_gpu(Form::Wide, rows, &queries) == by_cpu);
+    assert!(on_gpu(Form::Lanes, rows, &queries) == by_cpu);
 }
 
-/// A diverged policy asks for what is not a number: the answer must still be a row.
+/// A diverged policy queries what is not a number: the result must still be a row.
 #[test]
 fn a_query_that_is_no_number_finds_a_row() {
     let rows = Draw::new(9).rows(300, 0.0);
@@ -361,7 +360,7 @@ fn a_query_that_is_no_number_finds_a_row() {
     }
 }
 
-/// What was saved answers as what was built; what is not of this database is not used.
+/// A saved index finds what the built one finds; one of another database is not used.
 #[test]
 fn an_index_is_kept_in_a_file() {
     let rows = &SYNTHETIC.rows[..5000];
@@ -370,7 +369,7 @@ fn an_index_is_kept_in_a_file() {
     let candidates: Vec<u32> = (0..rows.len() as u32).collect();
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("index");
-    for memory in [MEMORY, 0] {
+    for memory in [DEFAULT_TABLE_BYTES, 0] {
         let built = Index::build(&frames, &candidates, memory);
         built.save(&path, 7).expect("a file");
         let load =

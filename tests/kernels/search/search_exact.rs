@@ -1,4 +1,4 @@
-//! Oracle: `search_exact::twin`, which looks at every row.
+//! Oracle: `search_exact::twin`, which compares every row.
 //! Bar: equal indices. Features are small integers, so that every form computes all scores and
 //! distances without rounding and ties abound; real features follow in `search`.
 
@@ -8,8 +8,7 @@ use bytemuck::cast_slice;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
 use footwork::kernels::search::{search_exact, search_score_lanes};
-use footwork::motion::database::ROW_STRIDE;
-use footwork::motion::features::FEATURE_DIM;
+use footwork::motion::features::{FEATURE_DIM, ROW_STRIDE};
 
 struct Case {
     rows: Vec<[f32; ROW_STRIDE]>,
@@ -21,7 +20,7 @@ struct Case {
 impl Case {
     fn new(rows: &[[f32; ROW_STRIDE]], queries: Vec<[f32; ROW_STRIDE]>, block: u32) -> Self {
         let rows: Vec<_> = rows.iter().map(search_score_lanes::with_half_square).collect();
-        let longest = rows
+        let max_norm = rows
             .iter()
             .map(|row| -2.0 * row[FEATURE_DIM])
             .fold(0.0, f32::max);
@@ -43,7 +42,7 @@ impl Case {
                 count,
                 candidates,
                 block,
-                longest: longest.sqrt(),
+                max_norm: max_norm.sqrt(),
             },
         }
     }
@@ -81,14 +80,14 @@ impl Case {
 
     fn checked(&self) -> Vec<u32> {
         let groups = groups(&shader::SEARCH_EXACT, self.queries.len());
-        self.params.passes().fold(self.matched(), |matched, pass| {
+        self.params.block_runs().fold(self.matched(), |matched, run| {
             let buffers: [&[u8]; 4] = [
                 cast_slice(&self.rows),
                 cast_slice(&self.queries),
                 cast_slice(&self.score),
                 cast_slice(&matched),
             ];
-            checked::run(&shader::SEARCH_EXACT, groups, &buffers, &pass).of(3)
+            checked::run(&shader::SEARCH_EXACT, groups, &buffers, &run).of(3)
         })
     }
 

@@ -1,4 +1,4 @@
-// Every environment's obstacles, drawn from the worlds' own buffer, one instance each.
+// Every environment's obstacles, drawn from the environments' own buffer, one instance each.
 //
 // boxes  [envs][BOX][count]
 
@@ -16,7 +16,7 @@ const HEIGHT = 0.35;
 @vertex
 fn place(
     @builtin(instance_index) instance: u32,
-    // As of `block`.
+    // As of `cuboid`.
     @location(0) corner: vec3f,
     @location(1) normal: vec3f,
 ) -> Corner {
