@@ -11,7 +11,7 @@ pub mod value_normalizer;
 
 use crate::container::{Section, SectionError};
 use crate::env::{EnvBatch, Stats};
-use crate::nn::Policy;
+use crate::nn::policy::Policy;
 use anyhow::Result;
 
 /// What an algorithm made of one rollout.
