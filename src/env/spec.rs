@@ -1,22 +1,7 @@
 //! What an environment observes, how it acts, and how long a step lasts.
 
+pub use crate::nn::observation::ObservationSpec;
 use serde::{Deserialize, Serialize};
-
-/// An observation of one agent: a vector, and maps beside it where there are any.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ObservationSpec {
-    /// Numbers of the vector; they come first.
-    pub vector: usize,
-    /// `[height, width, channels]` of the maps that follow it, channels last.
-    pub grid: Option<[usize; 3]>,
-}
-
-impl ObservationSpec {
-    /// Numbers of an observation, the maps included.
-    pub fn dim(&self) -> usize {
-        self.vector + self.grid.map_or(0, |shape| shape.iter().product())
-    }
-}
 
 /// The dimensions of a batch of environments. Rows of a batch are `envs * agents`, the agents of an
 /// environment side by side.

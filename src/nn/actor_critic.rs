@@ -2,7 +2,7 @@
 
 use super::layer::Activation;
 use super::network::{Network, NetworkConfig, NetworkError};
-use crate::env::ObservationSpec;
+use super::observation::ObservationSpec;
 use crate::kernels::rng::{gaussian, random4};
 use std::ops::Range;
 

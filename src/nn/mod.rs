@@ -13,6 +13,7 @@ pub mod gpu;
 pub mod layer;
 pub mod network;
 pub mod objective;
+pub mod observation;
 pub mod policy;
 pub mod running_mean_std;
 

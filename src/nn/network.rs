@@ -4,7 +4,7 @@
 //! own; what these make of them joins the observation's vector, and both go through the trunk.
 
 use super::layer::{Activation, Convolution, Layer};
-use crate::env::ObservationSpec;
+use super::observation::ObservationSpec;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
