@@ -71,7 +71,7 @@ pub enum CheckpointError {
         wanted: String,
     },
     #[error(
-        "{path} is of environments with {found} observations and actions, not with {wanted}: start another run"
+        "{path} is of environments with {found}, not with {wanted}: start another run"
     )]
     Spec {
         path: PathBuf,
@@ -168,7 +168,10 @@ impl Checkpoint {
                 wanted,
             });
         }
-        let dims = |spec: &EnvSpec| format!("{} and {}", spec.observation.dim(), spec.action);
+        let dims = |spec: &EnvSpec| {
+            let (observation, action) = (spec.observation.dim(), spec.action);
+            format!("{observation} observations and {action} actions")
+        };
         if dims(&found.spec) != dims(spec) {
             return Err(CheckpointError::Spec {
                 path,
