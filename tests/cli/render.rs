@@ -109,7 +109,7 @@ fn a_run_that_cannot_be_shown_says_why() {
     place.refused(
         "render run -o two.png --data other.footwork",
         1,
-        &["another database"],
+        &["other data"],
     );
     std::fs::remove_file(place.path("run/checkpoints/last.ckpt")).unwrap();
     for program in [
@@ -128,6 +128,6 @@ fn a_checkpoint_of_an_older_format_is_not_taken_for_a_damaged_one() {
     bytes[16..20].copy_from_slice(&1u32.to_le_bytes());
     std::fs::write(&path, bytes).unwrap();
     for program in ["render run -o one.png", "play run", "eval run"] {
-        place.refused(program, 1, &["format version 1", "make it again"]);
+        place.refused(program, 1, &["(format 1)", "use the one that wrote it"]);
     }
 }
