@@ -1,11 +1,12 @@
 //! `footwork train`.
 
 use super::Usage;
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use footwork::env::EnvSpec;
 use footwork::gpu::{Choice, Device, Gpu};
+use footwork::rl::rollout::check_fits;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Preset};
 use footwork::train::run_dir::{RunDir, Summary};
@@ -223,10 +224,7 @@ impl Opened {
     pub fn new(entry: &TaskEntry, config: &mut Config) -> Result<Opened> {
         let spec = entry.check(config)?;
         let device = Device::open(config.device)?;
-        let observations = config.ppo.batch() * spec.observation.dim();
-        device
-            .holds("observations of an update", observations)
-            .map_err(|error| anyhow!("{error}: use a smaller --envs or ppo.rollout_length"))?;
+        check_fits(&device, &spec, config.ppo.rollout_length)?;
         // A resumed run must not change its device because another has appeared.
         config.device = device.choice();
         let loaded = (entry.load)(config)?;
