@@ -36,6 +36,7 @@ impl Play {
     fn policy(&self, run: &std::path::Path) -> Result<()> {
         let run = Run::open(run, self.data.as_deref())?;
         let locomotion = run.locomotion("play")?;
+        let (matcher, task) = (locomotion.matcher.clone(), locomotion.task);
         run.checkpoint(&run.path)?;
         let mut paths = run.folder.checkpoint_files()?;
         // The requested one is shown first: it comes last.
@@ -52,7 +53,6 @@ impl Play {
             }
         });
         let title = format!("footwork: {}", run.folder.path().display());
-        let (matcher, task) = (locomotion.matcher.clone(), locomotion.task);
         let context = PlaythroughContext::new(matcher, task, Style::BEST);
         window::play(&Gpu::drawing()?, &title, context, choices.collect())
     }
