@@ -97,7 +97,7 @@ impl Checkpoint {
         }
         let policy = learner.policy()?;
         let mut section = Section::default();
-        policy.save(&mut section);
+        policy.save(&mut section)?;
         sections.put("policy", section);
         let mut section = Section::default();
         learner.save(&mut section)?;
