@@ -5,6 +5,7 @@
 //! written beside their place and renamed: whole or not at all.
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -74,7 +75,7 @@ struct Contents<H> {
 }
 
 /// Named arrays of four-byte values (f32, u32), as raw bytes.
-#[derive(Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Arrays(Vec<(String, Vec<u8>)>);
 
 impl Arrays {
@@ -95,7 +96,7 @@ impl Arrays {
 }
 
 /// What one part of a program saves into a file that many parts share: values by name, and arrays.
-#[derive(Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section {
     values: serde_json::Map<String, serde_json::Value>,
     arrays: Arrays,
@@ -165,6 +166,74 @@ impl Section {
                 "its array `{name}` has numbers that are not finite"
             ))),
         }
+    }
+}
+
+/// The sections of a file, by name.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sections(BTreeMap<String, Section>);
+
+impl Sections {
+    /// Puts a section in under a name without `/`.
+    pub fn put(&mut self, name: &str, section: Section) {
+        self.0.insert(name.to_string(), section);
+    }
+
+    /// A section by name.
+    ///
+    /// # Errors
+    /// There is none of that name.
+    pub fn get(&self, name: &str) -> Result<&Section, SectionError> {
+        let section = self.0.get(name);
+        section.ok_or_else(|| SectionError(format!("it has no section `{name}`")))
+    }
+
+    /// Takes a section out.
+    ///
+    /// # Errors
+    /// There is none of that name.
+    pub fn take(&mut self, name: &str) -> Result<Section, SectionError> {
+        let section = self.0.remove(name);
+        section.ok_or_else(|| SectionError(format!("it has no section `{name}`")))
+    }
+
+    /// Writes all sections into one file; an array is called `section/array` there.
+    ///
+    /// # Errors
+    /// See [`StoreError`].
+    pub fn save(&self, path: &Path, format: Format) -> Result<(), StoreError> {
+        let mut arrays = Arrays::default();
+        for (name, section) in &self.0 {
+            let named = section.arrays.0.iter();
+            let named = named.map(|(array, bytes)| (format!("{name}/{array}"), bytes.clone()));
+            arrays.0.extend(named);
+        }
+        let values = self.0.iter().map(|(name, section)| (name, &section.values));
+        save(path, format, &values.collect::<BTreeMap<_, _>>(), &arrays)
+    }
+
+    /// Reads all sections of a file.
+    ///
+    /// # Errors
+    /// See [`StoreError`].
+    pub fn load(path: &Path, format: Format) -> Result<Self, StoreError> {
+        let (values, arrays) = load::<BTreeMap<String, _>>(path, format)?;
+        let sections = values.into_iter().map(|(name, values)| {
+            let arrays = Arrays::default();
+            (name, Section { values, arrays })
+        });
+        let mut sections = Sections(sections.collect());
+        for (name, bytes) in arrays.0 {
+            let (section, array) = name.split_once('/').unwrap_or_default();
+            let Some(section) = sections.0.get_mut(section) else {
+                return Err(StoreError::Damaged {
+                    path: path.to_path_buf(),
+                    why: format!("array `{name}` belongs to no section"),
+                });
+            };
+            section.arrays.0.push((array.to_string(), bytes));
+        }
+        Ok(sections)
     }
 }
 

@@ -1,23 +1,20 @@
 //! `footwork ablate`.
 
 use super::Usage;
-use super::train::{Choices, on_interrupt, open};
+use super::train::{Choices, Opened, on_interrupt};
 use anyhow::Result;
-use clap::{Args, Subcommand};
-use footwork::train::ablation::{PARTS, READINGS, Variant, ablate, summary};
-use footwork::train::config::Kind;
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use footwork::train::ablation::Comparison;
+use footwork::train::task::{Ablation, TaskEntry};
+use footwork::train::tasks::REGISTRY;
 use std::path::PathBuf;
 
-#[derive(Subcommand)]
-pub enum Ablate {
-    /// The task with obstacles: the method whole, without its hit reward, without its curriculum
-    Obstacles(Choice),
-    /// The task with obstacles: the paper's reward as printed, and other readings of it
-    Readings(Choice),
-}
-
 #[derive(Args)]
-pub struct Choice {
+pub struct Ablate {
+    /// What to compare
+    #[arg(value_parser = names())]
+    what: String,
     #[command(flatten)]
     choices: Choices,
     /// Trainings of each variant, from the seeds 1, 2, ..
@@ -28,41 +25,45 @@ pub struct Choice {
         allow_negative_numbers = true
     )]
     seeds: u32,
-    /// Folder of all its runs; given again, it goes on where it was [default: runs/ablation or
-    /// runs/readings]
+    /// Folder of all its runs; given again, it goes on where it was [default: runs/WHAT]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
-impl Ablate {
-    pub fn run(self) -> Result<()> {
-        match self {
-            Ablate::Obstacles(choice) => choice.run(&PARTS, "runs/ablation"),
-            Ablate::Readings(choice) => choice.run(&READINGS, "runs/readings"),
-        }
-    }
+/// Every ablation with the task it is of.
+fn all() -> impl Iterator<Item = (&'static TaskEntry, &'static Ablation)> {
+    let tasks = REGISTRY.iter();
+    tasks.flat_map(|entry| entry.ablations.iter().map(move |ablation| (entry, ablation)))
 }
 
-impl Choice {
-    fn run(self, variants: &[Variant], folder: &str) -> Result<()> {
-        let out = self.out.unwrap_or(folder.into());
+fn names() -> PossibleValuesParser {
+    let names = all().map(|(_, ablation)| PossibleValue::new(ablation.name).help(ablation.about));
+    PossibleValuesParser::new(names)
+}
+
+impl Ablate {
+    pub fn run(self) -> Result<()> {
         if self.seeds == 0 || self.seeds > 100 {
             return Err(Usage("--seeds must be from 1 to 100".into()).into());
         }
+        let found = all().find(|(_, ablation)| ablation.name == self.what);
+        let Some((entry, ablation)) = found else {
+            return Err(Usage(format!("there is no ablation `{}`", self.what)).into());
+        };
         let interrupted = on_interrupt()?;
-        let mut config = self.choices.config(Kind::Obstacles)?;
-        let (device, database) = open(&mut config)?;
-        let outcomes = ablate(
-            variants,
-            &config,
-            self.seeds,
-            &out,
-            &database,
-            &device,
-            interrupted,
-        )?;
-        match outcomes {
-            Some(outcomes) => print!("{}", summary(variants, &outcomes)),
+        let mut config = self.choices.config(entry)?;
+        let Opened { device, task, .. } = Opened::new(entry, &mut config)?;
+        let out = self.out.unwrap_or_else(|| ablation.folder.into());
+        let comparison = Comparison {
+            entry,
+            ablation,
+            base: &config,
+            task: &*task,
+            device: &device,
+            out: &out,
+        };
+        match comparison.run(self.seeds, interrupted)? {
+            Some(outcomes) => print!("{}", comparison.summary(&outcomes)),
             None => println!("go on with the same command"),
         }
         println!("see {}", out.display());

@@ -14,6 +14,7 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 use footwork::motion::error::MotionError;
 use footwork::train::config::ConfigError;
+use footwork::train::task::Unsupported;
 
 /// Trains character controllers: motion capture in, a policy that moves a full-body character out.
 #[derive(Parser)]
@@ -26,12 +27,10 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Train a policy
-    #[command(subcommand)]
     Train(train::Train),
     /// Train variants of a task side by side
-    #[command(subcommand)]
     Ablate(ablate::Ablate),
-    /// Judge a trained policy on a fixed set of episodes
+    /// Evaluate a trained policy on a fixed set of episodes
     Eval(eval::Eval),
     /// Open a window on a trained policy, or on motion
     Play(play::Play),
@@ -53,7 +52,7 @@ pub struct Usage(pub String);
 
 pub fn run() -> Result<()> {
     match Cli::parse().command {
-        Command::Train(task) => task.run(),
+        Command::Train(train) => train.run(),
         Command::Ablate(ablate) => ablate.run(),
         Command::Eval(eval) => eval.run(),
         Command::Play(play) => play.run(),
@@ -67,7 +66,8 @@ pub fn run() -> Result<()> {
 /// 2 for mistakes of usage, 1 for everything else.
 pub fn exit_code(error: &anyhow::Error) -> u8 {
     let roles = matches!(error.downcast_ref(), Some(MotionError::RolesFile { .. }));
-    match error.is::<Usage>() || error.is::<ConfigError>() || roles {
+    let usage = error.is::<Usage>() || error.is::<ConfigError>() || error.is::<Unsupported>();
+    match usage || roles {
         true => 2,
         false => 1,
     }

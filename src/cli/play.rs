@@ -1,6 +1,6 @@
 //! `footwork play`.
 
-use super::run::{locate, motion};
+use super::run::Run;
 use anyhow::Result;
 use clap::Args;
 use footwork::gpu::Gpu;
@@ -8,11 +8,10 @@ use footwork::motion::normalise::Weights;
 use footwork::viewer::app::Choice;
 use footwork::viewer::window;
 use footwork::playback::player::Style;
-use footwork::train::checkpoint::Checkpoint;
-use footwork::train::controller::Trained;
+use footwork::train::controller::Controller;
 use footwork::train::data;
 use footwork::view::playthrough::PlaythroughContext;
-use footwork::env::locomotion::{Plane, Task};
+use footwork::env::locomotion::{LocomotionTask, Plane};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -35,45 +34,40 @@ impl Play {
     }
 
     fn policy(&self, run: &std::path::Path) -> Result<()> {
-        let (folder, path) = locate(run)?;
-        let config = folder.read_config()?;
-        let database = motion(&config, self.data.as_deref())?;
-        let checkpoint = Checkpoint::load_for(&path, &config.task, database.fingerprint)?;
-        let task = checkpoint.header.task;
-        let mut paths = folder.checkpoint_files()?;
+        let run = Run::open(run, self.data.as_deref())?;
+        let locomotion = run.locomotion("play")?;
+        let (matcher, task) = (locomotion.matcher.clone(), locomotion.task);
+        run.checkpoint(&run.path)?;
+        let mut paths = run.folder.checkpoint_files()?;
         // The requested one is shown first: it comes last.
-        paths.retain(|other| other.file_name() != path.file_name());
-        paths.push(path);
+        paths.retain(|other| other.file_name() != run.path.file_name());
+        paths.push(run.path.clone());
+        let run = Arc::new(run);
         let choices = paths.into_iter().map(|path| {
-            let (task, database) = (config.task, database.fingerprint);
+            let name = path.file_stem().unwrap_or_default();
+            let (name, run) = (name.to_string_lossy().into(), run.clone());
+            let load = move || Ok(Box::new(run.checkpoint(&path)?.policy) as Box<dyn Controller>);
             Choice {
-                name: path
-                    .file_stem()
-                    .unwrap_or_default()
-                    .to_string_lossy()
-                    .into(),
-                load: Box::new(move || {
-                    let checkpoint = Checkpoint::load_for(&path, &task, database)?;
-                    Ok(Box::new(Trained::from(&checkpoint)))
-                }),
+                name,
+                load: Box::new(load),
             }
         });
-        let title = format!("footwork: {}", folder.path().display());
-        let context = PlaythroughContext::new(database.clone(), task, Style::BEST);
+        let title = format!("footwork: {}", run.folder.path().display());
+        let context = PlaythroughContext::new(matcher, task, Style::BEST);
         window::play(&Gpu::drawing()?, &title, context, choices.collect())
     }
 
     fn motion(&self) -> Result<()> {
-        let (database, notes) = data::load(self.data.as_deref(), Weights::PAPER)?;
+        let (matcher, notes) = data::load_matcher(self.data.as_deref(), Weights::PAPER)?;
         for note in notes {
             eprintln!("note: {note}");
         }
         // Steered by hand, the character never arrives.
-        let task = Task::Plane(Plane {
-            reach: 0.0,
+        let task = LocomotionTask::Plane(Plane {
+            success_radius: 0.0,
             ..Plane::default()
         });
-        let context = PlaythroughContext::new(Arc::new(database), task, Style::BEST);
+        let context = PlaythroughContext::new(Arc::new(matcher), task, Style::BEST);
         window::play(&Gpu::drawing()?, "footwork", context, Vec::new())
     }
 }

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use footwork::gpu::Gpu;
 use footwork::playback::player::Style;
 use footwork::playback::stitch::Stitching;
-use footwork::train::controller::Trained;
+use footwork::nn::Policy;
 use footwork::view::image_files::{self, Output};
 use footwork::view::debug_draw::scene;
 use footwork::view::playthrough::{Playthrough, PlaythroughContext};
@@ -129,14 +129,12 @@ impl Render {
         let output = self.check()?;
         let run = Run::open(&self.run, self.data.as_deref())?;
         let gpu = Gpu::drawing()?;
-        let context = PlaythroughContext::new(
-            run.database,
-            run.checkpoint.header.task,
-            self.blend.style(),
-        );
+        let locomotion = run.locomotion("render")?;
+        let (matcher, task) = (locomotion.matcher.clone(), locomotion.task);
+        let context = PlaythroughContext::new(matcher, task, self.blend.style());
         let mut film = Film {
             playthrough: Playthrough::new(&context, self.episode),
-            policy: Trained::from(&run.checkpoint),
+            policy: run.checkpoint(&run.path)?.policy,
             context,
             camera: Camera {
                 yaw: self.yaw.to_radians(),
@@ -225,7 +223,7 @@ impl Render {
 /// A playthrough before a camera.
 struct Film {
     context: PlaythroughContext,
-    policy: Trained,
+    policy: Policy,
     playthrough: Playthrough,
     camera: Camera,
     renderer: Renderer,

@@ -1,63 +1,79 @@
 //! A trained run, opened.
 
 use anyhow::{Context, Result};
-use footwork::motion::database::Database;
-use footwork::train::checkpoint::Checkpoint;
+use footwork::env::EnvSpec;
+use footwork::train::checkpoint::{Checkpoint, CheckpointError};
 use footwork::train::config::Config;
-use footwork::train::data;
-use footwork::train::run_dir::Folder;
+use footwork::train::locomotion::Locomotion;
+use footwork::train::run_dir::RunDir;
+use footwork::train::task::{Task, Unsupported};
+use footwork::train::tasks::{config_of, find};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+
+/// A run with its task, its data, and the path of one of its checkpoints.
+pub struct Run {
+    pub folder: RunDir,
+    pub config: Config,
+    pub spec: EnvSpec,
+    pub task: Box<dyn Task>,
+    /// The given checkpoint, or the last of a given folder.
+    pub path: PathBuf,
+}
+
+impl Run {
+    /// Opens a run's folder, or one of its checkpoints; its motion is where it was, or at `moved`.
+    pub fn open(run: &Path, moved: Option<&Path>) -> Result<Run> {
+        let (folder, path) = locate(run)?;
+        let mut config = config_of(&folder)?;
+        let entry = find(&config.task.name)?;
+        let spec = entry.check(&config)?;
+        if let Some(moved) = moved {
+            config.data = Some(moved.to_path_buf());
+        } else if let Some(gone) = config.data.as_deref().filter(|path| !path.exists()) {
+            anyhow::bail!(
+                "the motion that the run was trained with is gone: it was {}; say where it is now with --data",
+                gone.display()
+            );
+        }
+        // What is to be said of the data was said when the training started.
+        let task = (entry.load)(&config)?.task;
+        Ok(Run {
+            folder,
+            config,
+            spec,
+            task,
+            path,
+        })
+    }
+
+    /// One of the run's checkpoints.
+    pub fn checkpoint(&self, path: &Path) -> Result<Checkpoint, CheckpointError> {
+        let (task, fingerprint) = (&self.config.task.name, self.task.fingerprint());
+        Checkpoint::load_for(path, task, &self.spec, fingerprint)
+    }
+
+    /// What only runs of motion matching have; `wanted` is who asks for it.
+    pub fn locomotion(&self, wanted: &str) -> Result<&Locomotion, Unsupported> {
+        let name = &self.config.task.name;
+        let why = || Unsupported(format!("`{wanted}` shows motion matching, which `{name}` is not of"));
+        self.task.locomotion().ok_or_else(why)
+    }
+}
 
 /// The run's folder, and the checkpoint: the given one, or the last of a given folder.
-pub fn locate(run: &Path) -> Result<(Folder, PathBuf)> {
+fn locate(run: &Path) -> Result<(RunDir, PathBuf)> {
     if run.is_file() {
         let whole = std::path::absolute(run)?;
-        let folder = whole.ancestors().nth(2).map(Folder::open);
+        let folder = whole.ancestors().nth(2).map(RunDir::open);
         let folder = folder.and_then(Result::ok).with_context(|| {
             format!(
-                "{} does not lie in the checkpoints of a run: give a run's folder, or one of its checkpoints where it was written",
+                "{} is not in the checkpoints of a run: give a run's folder, or one of its checkpoints where it was written",
                 run.display()
             )
         })?;
         return Ok((folder, run.to_path_buf()));
     }
-    let folder = Folder::open(run)?;
+    let folder = RunDir::open(run)?;
     let last = folder.last()?;
     Ok((folder, last))
-}
-
-/// The motion a run was trained with, from where it was or from `moved`.
-///
-/// # Errors
-/// It is in neither place; says where it was and what to pass.
-pub fn motion(config: &Config, moved: Option<&Path>) -> Result<Arc<Database>> {
-    let path = moved.or(config.data.as_deref());
-    if let (None, Some(gone)) = (moved, path.filter(|path| !path.exists())) {
-        anyhow::bail!(
-            "the motion that the run was trained with is gone: it was {}; say where it is now with --data",
-            gone.display()
-        );
-    }
-    let (database, _) = data::load(path, config.weights)?;
-    Ok(Arc::new(database))
-}
-
-/// A run with one of its checkpoints.
-pub struct Run {
-    pub checkpoint: Checkpoint,
-    pub database: Arc<Database>,
-}
-
-impl Run {
-    pub fn open(run: &Path, moved: Option<&Path>) -> Result<Run> {
-        let (folder, path) = locate(run)?;
-        let config = folder.read_config()?;
-        let database = motion(&config, moved)?;
-        let checkpoint = Checkpoint::load_for(&path, &config.task, database.fingerprint)?;
-        Ok(Run {
-            checkpoint,
-            database,
-        })
-    }
 }

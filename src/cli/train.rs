@@ -2,58 +2,35 @@
 
 use super::Usage;
 use anyhow::Result;
-use clap::{Args, Subcommand};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use footwork::env::EnvSpec;
 use footwork::gpu::{Choice, Device, Gpu};
-use footwork::motion::database::Database;
-use footwork::viewer::window;
+use footwork::rl::rollout::check_fits;
 use footwork::train::checkpoint::Checkpoint;
-use footwork::train::config::{Config, Kind, Preset};
-use footwork::train::data;
-use footwork::train::run_dir::{Folder, Summary};
-use footwork::train::trainer::{Watch, train};
-use footwork::env::locomotion::Task;
+use footwork::train::config::{Config, Preset};
+use footwork::train::run_dir::{RunDir, Summary};
+use footwork::train::task::{Task, TaskEntry, Unsupported};
+use footwork::train::tasks::{REGISTRY, config_of, find};
+use footwork::train::trainer::{Training, Watch, train};
+use footwork::viewer::window;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-#[derive(Subcommand)]
-pub enum Train {
-    /// Reach a target on an empty plane
-    Plane(Options),
-    /// Reach a target among 100 moving obstacles
-    Obstacles(Obstacles),
-}
-
 #[derive(Args)]
-pub struct Obstacles {
-    #[command(flatten)]
-    options: Options,
-    /// Do not reward asking for positions outside obstacles
-    #[arg(long, conflicts_with = "resume")]
-    no_hit_reward: bool,
-    /// Train on the hardest level from the start
-    #[arg(long, conflicts_with = "resume")]
-    no_curriculum: bool,
-    /// Reward for reaching the target [default: 10]
-    #[arg(
-        long,
-        value_name = "REWARD",
-        conflicts_with = "resume",
-        allow_negative_numbers = true
-    )]
-    success_bonus: Option<f32>,
-}
-
-#[derive(Args)]
-pub struct Options {
+pub struct Train {
+    /// What to learn
+    #[arg(value_parser = names())]
+    task: String,
     #[command(flatten)]
     choices: Choices,
     /// Stop after this time in all, like 90s, 5m or 1h30m; looked at after each update
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, allow_hyphen_values = true)]
     max_time: Option<std::time::Duration>,
-    /// Stop at this share of successful evaluation episodes, like 0.99
-    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
-    stop_success: Option<f64>,
+    /// Stop at this fraction of successful evaluation episodes, like 0.99
+    #[arg(long, value_name = "FRACTION", allow_negative_numbers = true)]
+    stop_at_success: Option<f64>,
     /// The same seed on the same device gives the same result, bit for bit [default: 1]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seed: Option<u32>,
@@ -64,8 +41,23 @@ pub struct Options {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Go on with a run as if it had never stopped
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["data", "device", "envs", "seed", "preset", "config", "out"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["data", "device", "envs", "seed", "preset", "config", "set", "out"])]
     resume: Option<PathBuf>,
+    /// Do not reward requests of positions outside obstacles: --set task.hit_reward=0
+    #[arg(long, conflicts_with = "resume", help_heading = "Among obstacles")]
+    no_hit_reward: bool,
+    /// Train on the hardest level from the start: --set task.curriculum=false
+    #[arg(long, conflicts_with = "resume", help_heading = "Among obstacles")]
+    no_curriculum: bool,
+    /// Reward for reaching the target: --set task.success_bonus=REWARD
+    #[arg(
+        long,
+        value_name = "REWARD",
+        conflicts_with = "resume",
+        allow_negative_numbers = true,
+        help_heading = "Among obstacles"
+    )]
+    success_bonus: Option<f64>,
 }
 
 /// What every kind of training may be asked for.
@@ -80,8 +72,7 @@ pub struct Choices {
     /// Environments stepped together
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     envs: Option<usize>,
-    /// Stop after this many environment steps in all, resumptions included [default: 1000000 on
-    /// the plane, 3000000 among obstacles]
+    /// Stop after this many environment steps in all, resumptions included [default: the preset's]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     steps: Option<u64>,
     /// `fast` as measured here, or `paper` with the paper's settings [default: fast]
@@ -90,129 +81,114 @@ pub struct Choices {
     /// A TOML file that changes keys of the preset: see any run's config.toml
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
+    /// Change one key after that, like ppo.gamma=0.98; may be given several times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    set: Vec<Setting>,
+}
+
+/// A key of the configuration with its new value.
+#[derive(Clone)]
+struct Setting {
+    key: String,
+    value: toml::Value,
+}
+
+/// A value is TOML, or else a word.
+fn setting(text: &str) -> Result<Setting, String> {
+    let Some((key, value)) = text.split_once('=') else {
+        return Err("a key, `=` and a value, like ppo.gamma=0.98".into());
+    };
+    let parsed = toml::from_str(&format!("value = {value}"));
+    let parsed = parsed.map(|mut table: toml::Table| table.remove("value"));
+    Ok(Setting {
+        key: key.trim().to_string(),
+        value: parsed.ok().flatten().unwrap_or_else(|| value.into()),
+    })
+}
+
+fn names() -> PossibleValuesParser {
+    let names = REGISTRY.iter();
+    PossibleValuesParser::new(names.map(|entry| PossibleValue::new(entry.name).help(entry.about)))
 }
 
 impl Train {
     pub fn run(self) -> Result<()> {
-        match self {
-            Train::Plane(options) => options.run(Kind::Plane, |_| {}),
-            Train::Obstacles(obstacles) => {
-                let change = |task: &mut Task| {
-                    if let Task::Obstacles(task) = task {
-                        if obstacles.no_hit_reward {
-                            task.hit_reward = 0.0;
-                        }
-                        task.curriculum &= !obstacles.no_curriculum;
-                        task.success_bonus = obstacles.success_bonus.unwrap_or(task.success_bonus);
-                    }
-                };
-                obstacles.options.run(Kind::Obstacles, change)
-            }
-        }
-    }
-}
-
-impl Options {
-    /// `change` applies the options of one task alone.
-    fn run(&self, kind: Kind, change: impl FnOnce(&mut Task)) -> Result<()> {
+        let entry = find(&self.task)?;
         let interrupted = on_interrupt()?;
-        let resumed = self.resume.as_deref().map(Folder::open).transpose()?;
+        let resumed = self.resume.as_deref().map(RunDir::open).transpose()?;
         let mut config = match &resumed {
-            Some(folder) => self.limited(same_task(folder, kind)?),
-            None => self.fresh(kind)?,
+            Some(run) => same_task(run, entry)?,
+            None => self.fresh(entry)?,
         };
-        if resumed.is_none() {
-            change(&mut config.task);
+        self.limit(&mut config);
+        let opened = Opened::new(entry, &mut config)?;
+        if self.watch && opened.task.locomotion().is_none() {
+            let why = format!("--watch shows motion matching, which `{}` is not of", entry.name);
+            return Err(Unsupported(why).into());
         }
-        let (device, database) = open(&mut config)?;
-        let checkpoint = match &resumed {
-            Some(folder) => Some(Checkpoint::load_for(
-                &folder.last()?,
-                &config.task,
-                database.fingerprint,
-            )?),
+        let from = match &resumed {
+            Some(run) => Some(go_on(run, &config, &opened)?),
             None => None,
         };
-        if let Some(checkpoint) = &checkpoint {
-            checkpoint.check_same(&config)?;
-            if checkpoint.header.steps >= config.steps {
-                let done = checkpoint.header.steps;
-                let why = format!("the run has done {done} steps: give a larger --steps");
-                return Err(Usage(why).into());
-            }
-        }
-        let folder = match resumed {
-            Some(folder) => folder,
-            None => Folder::create(self.out.as_deref(), config.task.name())?,
+        let run = match resumed {
+            Some(run) => run,
+            None => RunDir::create(self.out.as_deref(), entry.name)?,
         };
-        let written = folder.write_config(&config);
-        written.inspect_err(|_| folder.remove_empty())?;
-        introduce(&config, &folder, &database, &device);
-        let run = |watch: Option<&Watch>| {
-            let folder = &folder;
-            train(
-                &config,
-                folder,
-                &database,
-                &device,
-                checkpoint,
-                interrupted,
-                watch,
-            )
+        let (task, device) = (&*opened.task, &opened.device);
+        eprintln!(
+            "training `{}` on {}: {} environments, {}; run folder {}",
+            entry.name,
+            device.name(),
+            config.ppo.envs,
+            task.describe(),
+            run.path().display(),
+        );
+        let training = Training {
+            config: &config,
+            task,
+            run: &run,
+            device,
         };
         let summary = match self.watch {
-            false => run(None)?,
-            true => watched(&device, &database, &config, |watch| run(Some(watch)))?,
+            false => train(training, from, interrupted, None)?,
+            true => watched(training, |watch| train(training, from, interrupted, Some(watch)))?,
         };
-        println!(
-            "{} steps in {:.1} s ({:.0} steps/s), stopped by {}: {:.1} % of 1000 episodes{} reach the target, in {:.2} s on average",
-            summary.steps,
-            summary.wall_s,
-            summary.steps_per_s,
-            summary.stopped_by,
-            100.0 * summary.success,
-            summary.level.map_or("", |_| " on the hardest level"),
-            summary.time_to_target_mean_s,
-        );
-        println!(
-            "see {0}/learning_curve.png, judge with `footwork eval {0}`",
-            folder.path().display()
-        );
-        if summary.stopped_by == "interrupt" {
-            println!(
-                "go on with `footwork train {} --resume {}`",
-                config.task.name(),
-                folder.path().display()
-            );
-        }
+        tell(training, &summary);
         Ok(())
     }
 
-    fn fresh(&self, kind: Kind) -> Result<Config> {
-        let mut config = self.choices.config(kind)?;
+    /// The configuration of a new run.
+    fn fresh(&self, entry: &TaskEntry) -> Result<Config> {
+        let mut config = self.choices.config(entry)?;
         config.seed = self.seed.unwrap_or(config.seed);
-        Ok(self.limited(config))
+        if self.no_hit_reward {
+            config.set("task.hit_reward", 0.0.into())?;
+        }
+        if self.no_curriculum {
+            config.set("task.curriculum", false.into())?;
+        }
+        if let Some(bonus) = self.success_bonus {
+            config.set("task.success_bonus", bonus.into())?;
+        }
+        Ok(config)
     }
 
-    /// With what a resumed run may change too: when to stop.
-    fn limited(&self, mut config: Config) -> Config {
+    /// Takes over what a resumed run may change too: when to stop.
+    fn limit(&self, config: &mut Config) {
         config.steps = self.choices.steps.unwrap_or(config.steps);
-        config.max_time_s = self
-            .max_time
-            .map(|time| time.as_secs_f64())
-            .or(config.max_time_s);
-        config.stop_success = self.stop_success.or(config.stop_success);
-        config
+        let max_time_s = self.max_time.map(|time| time.as_secs_f64());
+        config.max_time_s = max_time_s.or(config.max_time_s);
+        config.stop_at_success = self.stop_at_success.or(config.stop_at_success);
     }
 }
 
 impl Choices {
     /// Preset, changed by the file, changed by the options.
-    pub fn config(&self, kind: Kind) -> Result<Config> {
+    pub fn config(&self, entry: &TaskEntry) -> Result<Config> {
         let preset = self.preset.unwrap_or_default();
         let mut config = match &self.config {
-            Some(path) => Config::from_file(path, kind, preset)?,
-            None => Config::preset(kind, preset),
+            Some(path) => entry.config_from(path, preset)?,
+            None => entry.config(preset),
         };
         if self.preset.is_some_and(|asked| asked != config.preset) {
             return Err(Usage(format!(
@@ -220,6 +196,9 @@ impl Choices {
                 config.preset
             ))
             .into());
+        }
+        for setting in &self.set {
+            config.set(&setting.key, setting.value.clone())?;
         }
         config.device = self.device.unwrap_or(config.device);
         config.ppo.envs = self.envs.unwrap_or(config.ppo.envs);
@@ -232,88 +211,105 @@ impl Choices {
     }
 }
 
-/// Checks a configuration and opens its device and data; what they turn out to be goes into it.
-pub fn open(config: &mut Config) -> Result<(Device, Arc<Database>)> {
-    config.check()?;
-    let device = Device::open(config.device)?;
-    let observations = config.ppo.batch() * config.task.width();
-    device
-        .holds("observations of an update", observations)
-        .map_err(|error| anyhow::anyhow!("{error}: use a smaller --envs or ppo.horizon"))?;
-    // A resumed run must not change its device because another has appeared.
-    config.device = device.choice();
-    let (database, notes) = data::load(config.data.as_deref(), config.weights)?;
-    for note in notes {
-        eprintln!("note: {note}");
+/// The device and the data of a configuration.
+pub struct Opened {
+    pub device: Device,
+    pub task: Box<dyn Task>,
+    /// The dimensions of the environments.
+    pub spec: EnvSpec,
+}
+
+impl Opened {
+    /// Checks a configuration and opens its device and data; what they turn out to be goes into it.
+    pub fn new(entry: &TaskEntry, config: &mut Config) -> Result<Opened> {
+        let spec = entry.check(config)?;
+        let device = Device::open(config.device)?;
+        check_fits(&device, &spec, config.ppo.rollout_length)?;
+        // A resumed run must not change its device because another has appeared.
+        config.device = device.choice();
+        let loaded = (entry.load)(config)?;
+        for note in loaded.notes {
+            eprintln!("note: {note}");
+        }
+        config.task.settings = loaded.task.settings();
+        Ok(Opened {
+            device,
+            task: loaded.task,
+            spec,
+        })
     }
-    if config.weights != database.weights {
-        eprintln!("note: the database was made with other weights than asked for; its own hold");
-        config.weights = database.weights;
-    }
-    Ok((device, Arc::new(database)))
 }
 
 /// The configuration of a run that goes on with the task it has.
-fn same_task(folder: &Folder, kind: Kind) -> Result<Config> {
-    let config = folder.read_config()?;
-    let asked = match kind {
-        Kind::Plane => "plane",
-        Kind::Obstacles => "obstacles",
-    };
-    let found = config.task.name();
-    if found != asked {
+fn same_task(run: &RunDir, entry: &TaskEntry) -> Result<Config> {
+    let config = config_of(run)?;
+    let (found, wanted) = (&config.task.name, entry.name);
+    if found != wanted {
         return Err(Usage(format!(
-            "{} is a run of the task `{found}`, not of `{asked}`: go on with `footwork train {found} --resume {0}`",
-            folder.path().display()
+            "{} is a run of the task `{found}`, not of `{wanted}`: go on with `footwork train {found} --resume {0}`",
+            run.path().display()
         ))
         .into());
     }
     Ok(config)
 }
 
-fn introduce(config: &Config, folder: &Folder, database: &Database, device: &Device) {
-    eprintln!(
-        "training `{}` on {}: {} environments, {:.1} minutes of motion, {} candidates; run folder {}",
-        config.task.name(),
-        device.name(),
-        config.ppo.envs,
-        database.minutes(),
-        database.candidates.len(),
-        folder.path().display(),
-    );
+/// The checkpoint that a run goes on from.
+fn go_on(run: &RunDir, config: &Config, opened: &Opened) -> Result<Checkpoint> {
+    let (name, fingerprint) = (&config.task.name, opened.task.fingerprint());
+    let checkpoint = Checkpoint::load_for(&run.last()?, name, &opened.spec, fingerprint)?;
+    checkpoint.check_same(config)?;
+    let done = checkpoint.header.steps;
+    if done >= config.steps {
+        let why = format!("the run has done {done} steps: give a larger --steps");
+        return Err(Usage(why).into());
+    }
+    Ok(checkpoint)
 }
 
-/// Trains on a thread of its own while this one, as windows want it, shows the worlds.
+/// Says how a training ended.
+fn tell(training: Training, summary: &Summary) {
+    let (name, path) = (&training.config.task.name, training.run.path().display());
+    println!(
+        "{} steps in {:.1} s ({:.0} steps/s), stopped by {}: {}",
+        summary.steps,
+        summary.wall_s,
+        summary.steps_per_s,
+        summary.stopped_by,
+        training.task.sentence(&summary.evaluation)
+    );
+    println!("see {path}/learning_curve.png, evaluate with `footwork eval {path}`");
+    if summary.stopped_by == "interrupt" {
+        println!("go on with `footwork train {name} --resume {path}`");
+    }
+}
+
+/// Trains on a thread of its own while this one, as windows want it, shows the environments.
 fn watched(
-    device: &Device,
-    database: &Arc<Database>,
-    config: &Config,
+    training: Training,
     train: impl FnOnce(&Watch) -> Result<Summary> + Send,
 ) -> Result<Summary> {
     // Training on the CPU is drawn on what there is to draw on.
-    let gpu = match device {
+    let gpu = match training.device {
         Device::Gpu(gpu) => (**gpu).clone(),
         Device::Cpu => Gpu::drawing()?,
     };
     let (watch, over) = (Arc::new(Watch::default()), Arc::new(AtomicBool::new(false)));
     std::thread::scope(|scope| {
-        let training = scope.spawn(|| {
+        let running = scope.spawn(|| {
             let summary = train(&watch);
             over.store(true, Ordering::Relaxed);
             summary
         });
-        let shown = window::watch(
-            &gpu,
-            database.clone(),
-            config.task,
-            config.ppo.envs,
-            watch.clone(),
-            over.clone(),
-        );
-        if let Err(error) = shown {
-            eprintln!("note: the training goes on unwatched: {error:#}");
+        if let Some(locomotion) = training.task.locomotion() {
+            let (database, task) = (locomotion.matcher.database.clone(), locomotion.task);
+            let envs = training.config.ppo.envs;
+            let shown = window::watch(&gpu, database, task, envs, watch.clone(), over.clone());
+            if let Err(error) = shown {
+                eprintln!("note: the training goes on unwatched: {error:#}");
+            }
         }
-        training
+        running
             .join()
             .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })

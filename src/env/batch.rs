@@ -4,6 +4,7 @@
 //! every step cores would wait for the slowest. On a GPU all environments are one part.
 
 use super::curriculum::Curriculum;
+use super::locomotion::live_view::{LiveView, States};
 use super::{EnvSpec, Stats, VecEnv};
 use crate::container::{Section, SectionError};
 use crate::gpu::{Array, Device};
@@ -84,6 +85,22 @@ impl EnvBatch {
             let level = curriculum.level();
             self.parts.iter_mut().for_each(|part| part.set_level(level));
         }
+    }
+
+    /// As [`VecEnv::live_view`], of all parts.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn live_view(&mut self) -> Result<Option<LiveView>> {
+        let mut states = Vec::new();
+        for part in &mut self.parts {
+            match part.live_view()? {
+                Some(LiveView::Cpu(part)) => states.extend(part.0),
+                // A GPU has one part.
+                other => return Ok(other),
+            }
+        }
+        Ok(Some(LiveView::Cpu(States(states))))
     }
 
     /// Saves every part into a section of its own, and the curriculum.

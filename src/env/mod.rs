@@ -43,7 +43,8 @@ pub trait VecEnv: Send {
     fn step(&mut self, action: &Array, at: usize, out: Transition);
 
     /// Names of the sums that [`VecEnv::stats`] writes: `episodes`, `successes`, `steps` and `returns`
-    /// of the episodes that ended, and what is the environment's own.
+    /// of the episodes that ended, and the environment's own, by the names that their means have in
+    /// `metrics.jsonl`.
     fn stat_names(&self) -> &'static [&'static str];
 
     /// Writes the sums over all episodes that ended since the last call to `out`, in the order of

@@ -1,69 +1,61 @@
 //! A run at one moment, complete: it goes on from here as if it had never stopped.
+//!
+//! A file of sections. `run` says of what run it is, `policy` is enough to evaluate; `learner`, `envs.*`,
+//! `curriculum` and `trainer` are what the training goes on with.
 
-use super::config::Config;
-use crate::gpu::Device;
-use crate::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, MAP_WORDS, boxes, state_f32, state_u32};
-use crate::rl::ppo::Ppo;
-use crate::nn::adam::Adam;
-use crate::nn::network::{Network, Shape};
-use crate::rl::value_normalizer::Scale;
-use crate::rl::ppo::update::Learner;
-use crate::container::{Arrays, Format, StoreError};
-use crate::nn::tensors::{read, vector};
-use crate::env::locomotion::{EnvState, Task};
+use super::config::{Config, VERSION};
+use super::state::TrainerState;
+use crate::container::{Format, Section, SectionError, Sections, StoreError};
+use crate::env::{EnvBatch, EnvSpec};
+use crate::nn::Policy;
+use crate::rl::Algorithm;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 const FORMAT: Format = Format {
     kind: "checkpt",
-    version: 3,
+    version: 4,
 };
 
-/// What a policy was trained for, and how far the run had come.
+/// Of what run a checkpoint is, and how far the run had come.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
-    pub task: Task,
-    /// Numbers of an observation.
-    pub observation: usize,
-    /// Of the database: a policy is of no use with another.
-    pub database: u32,
-    pub network: Network,
-    /// All choices of learning, as TOML.
-    pub ppo: String,
-    pub seed: u32,
+    /// The program that wrote it.
+    pub version: String,
+    /// The task's name.
+    pub task: String,
+    pub spec: EnvSpec,
+    /// Of the task's data: a policy is of no use with other data.
+    pub fingerprint: u32,
+    /// The resolved configuration, as in `config.toml`.
+    pub config: String,
+    /// Environment steps so far.
     pub steps: u64,
+    /// Seconds of training so far.
     pub wall_s: f64,
-    pub updates: u64,
-    /// Learning rate and KL coefficient, kept among the arrays: JSON may round them.
-    #[serde(skip)]
-    pub rates: [f64; 2],
-    pub adam_steps: u64,
-    pub scale_updates: u64,
-    pub world: EnvState,
-    /// What the trainer remembers besides: see [`super::trainer`].
-    pub memory: super::trainer::Memory,
 }
 
-/// Header and arrays.
-#[derive(Clone, Debug, PartialEq)]
+/// A run at one moment.
 pub struct Checkpoint {
     pub header: Header,
-    pub shape: Shape,
-    pub parameters: Vec<f32>,
-    pub first_moment: Vec<f32>,
-    pub second_moment: Vec<f32>,
-    pub value_moments: Vec<f32>,
+    pub policy: Policy,
+    /// All but `run`.
+    pub sections: Sections,
 }
 
-/// Why a checkpoint does not fit.
+/// Why a checkpoint is of no use.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckpointError {
     #[error(transparent)]
     Store(#[from] StoreError),
     #[error(
-        "{path} was trained with another database (fingerprint {found:08x}, this one has {wanted:08x}): it is not the data the run was started with; bring that back or name it with --data, or start another run"
+        "{path} was written by footwork 0.1 from before checkpoints had sections (format {format}). This is footwork {VERSION}, which does not read it: use the one that wrote it, or train anew"
     )]
-    Database {
+    Older { path: PathBuf, format: u32 },
+    #[error(
+        "{path} was trained with other data (fingerprint {found:08x}, this has {wanted:08x}): bring back what the run was started with or name it with --data, or start another run"
+    )]
+    Data {
         path: PathBuf,
         found: u32,
         wanted: u32,
@@ -71,16 +63,20 @@ pub enum CheckpointError {
     #[error(
         "`{key}` in the run's config.toml is not what the run was started with: put it back, or start another run"
     )]
-    Changed { key: &'static str },
-    #[error(
-        "{path} is of the task `{found}` with {found_width} observations, not of `{wanted}` with {wanted_width}"
-    )]
+    Changed { key: String },
+    #[error("{path} is of the task `{found}`, not of `{wanted}`")]
     Task {
         path: PathBuf,
-        found: &'static str,
-        found_width: usize,
-        wanted: &'static str,
-        wanted_width: usize,
+        found: String,
+        wanted: String,
+    },
+    #[error(
+        "{path} is of environments with {found}, not with {wanted}: start another run"
+    )]
+    Spec {
+        path: PathBuf,
+        found: String,
+        wanted: String,
     },
 }
 
@@ -88,161 +84,142 @@ impl Checkpoint {
     /// Copies a run's state to the host.
     ///
     /// # Errors
-    /// The device failed.
-    pub fn take(header: Header, learner: &Learner) -> anyhow::Result<Self> {
+    /// The device was lost.
+    pub fn take(
+        header: Header,
+        learner: &dyn Algorithm,
+        envs: &EnvBatch,
+        state: &TrainerState,
+    ) -> anyhow::Result<Self> {
+        let mut sections = Sections::default();
+        for (name, section) in envs.save()? {
+            sections.put(&name, section);
+        }
+        let policy = learner.policy()?;
+        let mut section = Section::default();
+        policy.save(&mut section)?;
+        sections.put("policy", section);
+        let mut section = Section::default();
+        learner.save(&mut section)?;
+        sections.put("learner", section);
+        let mut section = Section::default();
+        state.save(&mut section);
+        sections.put("trainer", section);
         Ok(Checkpoint {
             header,
-            shape: learner.shape.clone(),
-            parameters: read(learner.parameters.clone())?,
-            first_moment: read(learner.adam.first.clone())?,
-            second_moment: read(learner.adam.second.clone())?,
-            value_moments: read(learner.scale.moments.clone())?,
+            policy,
+            sections,
         })
     }
 
-    /// Puts the state into a fresh learner of the same configuration.
+    /// Writes the file, whole or not at all.
     ///
     /// # Errors
-    /// See [`Learner::new`].
-    pub fn learner(&self, config: &Ppo, device: &Device) -> anyhow::Result<Learner> {
-        let header = &self.header;
-        let mut learner = Learner::new(config, header.observation, device, header.seed)?;
-        let device = &device.tensors();
-        learner.parameters = vector(&self.parameters, device);
-        learner.adam = Adam {
-            first: vector(&self.first_moment, device),
-            second: vector(&self.second_moment, device),
-            steps: self.header.adam_steps,
-        };
-        learner.scale = Scale {
-            moments: vector(&self.value_moments, device),
-            updates: self.header.scale_updates,
-        };
-        [learner.learning_rate, learner.kl_coefficient] = self.header.rates;
-        learner.updates = self.header.updates;
-        Ok(learner)
-    }
-
+    /// It cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), StoreError> {
-        let mut arrays = Arrays::default();
-        arrays.put("parameters", &self.parameters);
-        arrays.put("first_moment", &self.first_moment);
-        arrays.put("second_moment", &self.second_moment);
-        arrays.put("value_moments", &self.value_moments);
-        arrays.put("real", &self.header.world.state_f32);
-        arrays.put("whole", &self.header.world.state_u32);
-        arrays.put("boxes", &self.header.world.boxes);
-        arrays.put("drift", &self.header.world.obstacle_velocity);
-        arrays.put("maps", &self.header.world.maps);
-        arrays.put("rates", &self.header.rates);
-        crate::container::save(path, FORMAT, &self.header, &arrays)
+        let mut sections = self.sections.clone();
+        let mut run = Section::default();
+        run.put("run", &self.header);
+        sections.put("run", run);
+        sections.save(path, FORMAT)
     }
 
-    pub fn load(path: &Path) -> Result<Self, StoreError> {
-        let (mut header, mut arrays) = crate::container::load::<Header>(path, FORMAT)?;
-        let damaged = |why: &str| StoreError::Damaged {
-            path: path.to_path_buf(),
-            why: why.to_string(),
+    /// Reads a file, and of its sections what evaluation needs.
+    ///
+    /// # Errors
+    /// It cannot be read, is damaged, or of another version.
+    pub fn load(path: &Path) -> Result<Self, CheckpointError> {
+        let mut sections = Sections::load(path, FORMAT).map_err(|error| match error {
+            StoreError::Older { path, found, .. } => CheckpointError::Older {
+                path,
+                format: found,
+            },
+            other => other.into(),
+        })?;
+        let mut read = || -> Result<(Header, Policy), SectionError> {
+            let header = sections.take("run")?.get("run")?;
+            Ok((header, Policy::load(&mut sections.get("policy")?.clone())?))
         };
-        let mut floats = |name: &str| {
-            arrays
-                .take::<f32>(name)
-                .ok_or_else(|| damaged(&format!("no {name}")))
-        };
-        let parameters = floats("parameters")?;
-        let (first_moment, second_moment) = (floats("first_moment")?, floats("second_moment")?);
-        let value_moments = floats("value_moments")?;
-        header.world.state_f32 = floats("real")?;
-        header.world.boxes = floats("boxes")?;
-        header.world.obstacle_velocity = floats("drift")?;
-        header.world.state_u32 = arrays.take("whole").ok_or_else(|| damaged("no whole"))?;
-        header.world.maps = arrays.take("maps").ok_or_else(|| damaged("no maps"))?;
-        let rates: Vec<f64> = arrays.take("rates").ok_or_else(|| damaged("no rates"))?;
-        let shape = Shape::new(&header.network, header.observation)
-            .filter(|_| header.observation == header.task.width())
-            .ok_or_else(|| damaged("its network does not fit its task"))?;
-        let expected = shape.parameters();
-        let envs = header.world.state_u32.len() / state_u32::FIELDS;
-        let numbers = [
-            &parameters,
-            &first_moment,
-            &second_moment,
-            &value_moments,
-            &header.world.state_f32,
-            &header.world.boxes,
-            &header.world.obstacle_velocity,
-        ];
-        if !numbers
-            .into_iter()
-            .flatten()
-            .all(|number| number.is_finite())
-        {
-            return Err(damaged("it has numbers that are not finite"));
-        }
-        let Ok(rates) = <[f64; 2]>::try_from(rates) else {
-            return Err(damaged("its rates are not two"));
-        };
-        header.rates = rates;
-        if !rates.iter().all(|rate| rate.is_finite()) {
-            return Err(damaged("it has numbers that are not finite"));
-        }
-        let fits = envs > 0
-            && [parameters.len(), first_moment.len(), second_moment.len()] == [expected; 3]
-            && value_moments.len() == 2
-            && header.world.state_f32.len() == envs * state_f32::FIELDS
-            && header.world.state_u32.len() == envs * state_u32::FIELDS
-            && header.world.boxes.len() == envs * boxes::FIELDS * header.task.obstacles()
-            && header.world.obstacle_velocity.len() == envs * VELOCITY_DIM * header.task.obstacles()
-            && header.world.maps.len() == envs * MAP_WORDS;
-        if !fits {
-            return Err(damaged("its arrays do not fit together"));
-        }
+        let (header, policy) = read().map_err(|error| damaged(path, error))?;
         Ok(Checkpoint {
             header,
-            shape,
-            parameters,
-            first_moment,
-            second_moment,
-            value_moments,
+            policy,
+            sections,
         })
     }
 
-    /// Refuses to go on under another configuration than the one the run was started with.
-    pub fn check_same(&self, config: &Config) -> Result<(), CheckpointError> {
-        let (header, envs) = (&self.header, self.header.world.state_u32.len() / state_u32::FIELDS);
-        let same = [
-            ("ppo.envs", envs == config.ppo.envs),
-            ("ppo.network", header.network == config.ppo.network),
-            ("ppo", config.ppo.to_toml() == header.ppo),
-            (header.task.name(), header.task == config.task),
-            ("seed", header.seed == config.seed),
-        ];
-        match same.into_iter().find(|(_, same)| !same) {
-            None => Ok(()),
-            Some((key, _)) => Err(CheckpointError::Changed { key }),
-        }
-    }
-
-    /// Loads a checkpoint of a task for a database.
-    pub fn load_for(path: &Path, task: &Task, database: u32) -> Result<Self, CheckpointError> {
+    /// Reads a checkpoint for a task with its data.
+    ///
+    /// # Errors
+    /// It cannot be read, or is of another task, of other environments or other data.
+    pub fn load_for(
+        path: &Path,
+        task: &str,
+        spec: &EnvSpec,
+        fingerprint: u32,
+    ) -> Result<Self, CheckpointError> {
         let checkpoint = Self::load(path)?;
-        let header = &checkpoint.header;
-        if header.task.name() != task.name() || header.observation != task.width() {
+        let (found, path) = (&checkpoint.header, path.to_path_buf());
+        if found.task != task {
+            let (found, wanted) = (found.task.clone(), task.to_string());
             return Err(CheckpointError::Task {
-                path: path.to_path_buf(),
-                found: header.task.name(),
-                found_width: header.observation,
-                wanted: task.name(),
-                wanted_width: task.width(),
+                path,
+                found,
+                wanted,
             });
         }
-        if header.database != database {
-            return Err(CheckpointError::Database {
-                path: path.to_path_buf(),
-                found: header.database,
-                wanted: database,
+        let dims = |spec: &EnvSpec| {
+            let (observation, action) = (spec.observation.dim(), spec.action);
+            format!("{observation} observations and {action} actions")
+        };
+        if dims(&found.spec) != dims(spec) {
+            return Err(CheckpointError::Spec {
+                path,
+                found: dims(&found.spec),
+                wanted: dims(spec),
+            });
+        }
+        if found.fingerprint != fingerprint {
+            return Err(CheckpointError::Data {
+                path,
+                found: found.fingerprint,
+                wanted: fingerprint,
             });
         }
         Ok(checkpoint)
     }
+
+    /// Refuses to go on under another configuration than the one that the run was started with.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Changed`].
+    pub fn check_same(&self, config: &Config) -> Result<(), CheckpointError> {
+        match config.difference(&self.header.config) {
+            None => Ok(()),
+            Some(key) => Err(CheckpointError::Changed { key }),
+        }
+    }
+
+    /// Puts the state back into a fresh learner and environments of the same configuration.
+    ///
+    /// # Errors
+    /// A section is missing or damaged.
+    pub fn restore(
+        mut self,
+        path: &Path,
+        learner: &mut dyn Algorithm,
+        envs: &mut EnvBatch,
+    ) -> Result<TrainerState, CheckpointError> {
+        let mut restore = || -> Result<TrainerState, SectionError> {
+            learner.load(&mut self.sections.take("learner")?, &self.policy)?;
+            envs.load(|name| self.sections.take(name))?;
+            TrainerState::load(&mut self.sections.take("trainer")?)
+        };
+        restore().map_err(|error| damaged(path, error))
+    }
+}
+
+fn damaged(path: &Path, error: SectionError) -> CheckpointError {
+    let (path, why) = (path.to_path_buf(), error.0);
+    StoreError::Damaged { path, why }.into()
 }

@@ -1,15 +1,19 @@
-//! What a run was asked for: a preset, changed by a file, changed by the command line.
+//! The choices of a run: a preset, changed by a file, changed by the command line.
+//!
+//! The table `[task]` holds the name of a task and that task's own choices, `[ppo]` those of learning. A
+//! change is a TOML table laid over the preset's: keys that the preset does not have are refused.
 
 use crate::gpu::Choice;
-use crate::motion::normalise::Weights;
+use crate::nn::network::NetworkError;
 use crate::rl::ppo::Ppo;
-use crate::nn::layer::Convolution;
-use crate::nn::network::Network;
-use crate::env::locomotion::{Obstacles, Plane, Task};
 use clap::ValueEnum;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
+
+/// The version of this program, written into all it leaves behind.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// A complete set of choices to start from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
@@ -21,13 +25,6 @@ pub enum Preset {
     /// RLlib's PPO defaults of 2023, which the paper used, but for the critic: its targets are
     /// normalised, its loss is halved, and its clip limits the change of its output.
     Paper,
-}
-
-/// Which task a run trains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    Plane,
-    Obstacles,
 }
 
 /// The resolved configuration of a run, saved in its folder as `config.toml`.
@@ -46,17 +43,32 @@ pub struct Config {
     pub max_time_s: Option<f64>,
     /// Success over the evaluation episodes at which training stops.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub stop_success: Option<f64>,
-    /// Environment steps between two looks at `stop_success`.
+    pub stop_at_success: Option<f64>,
+    /// Environment steps between two looks at `stop_at_success`.
     pub evaluate_every: u64,
     /// Environment steps between two saved checkpoints.
     pub checkpoint_every: u64,
-    /// Importance of each group of features in the search.
-    pub weights: Weights,
-    /// A table of the task's name.
-    #[serde(flatten)]
-    pub task: Task,
+    pub task: TaskConfig,
     pub ppo: Ppo,
+}
+
+/// The choices of a task's preset.
+pub struct TaskPreset {
+    /// The table `[task]`, but for the name.
+    pub settings: toml::Table,
+    pub ppo: Ppo,
+    /// Environment steps of a training.
+    pub steps: u64,
+}
+
+/// A task by name, with its own choices.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TaskConfig {
+    /// One of the registry: see [`super::tasks::REGISTRY`].
+    pub name: String,
+    /// What else stands in the table: read by the task.
+    #[serde(flatten)]
+    pub settings: toml::Table,
 }
 
 /// Why a configuration is of no use. All of these are mistakes of usage.
@@ -75,88 +87,160 @@ pub enum ConfigError {
         line: usize,
         problem: String,
     },
+    #[error("--set {key}: {problem}")]
+    Set { key: String, problem: String },
     #[error("{key} is {value}: {why}")]
     Value {
         key: &'static str,
         value: String,
         why: String,
     },
+    #[error("[task]: {0}")]
+    Settings(String),
+    #[error("ppo.network.{0}")]
+    Network(#[from] NetworkError),
+    #[error("there is no task `{name}`{hint}")]
+    Task { name: String, hint: String },
+    #[error(
+        "{path} names no task in its table [task]: it was written by footwork 0.1 from before runs were divided into tables. This is footwork {VERSION}, which does not read it: use the one that wrote it, or train anew"
+    )]
+    Older { path: PathBuf },
 }
 
 impl Config {
-    pub fn preset(kind: Kind, preset: Preset) -> Self {
-        let (task, ppo) = match (kind, preset) {
-            (Kind::Plane, Preset::Fast) => (Task::Plane(Plane::default()), fast()),
-            (Kind::Plane, Preset::Paper) => (Task::Plane(Plane::default()), paper()),
-            (Kind::Obstacles, Preset::Fast) => (Task::Obstacles(Obstacles::FAST), fast_obstacles()),
-            (Kind::Obstacles, Preset::Paper) => {
-                (Task::Obstacles(Obstacles::PAPER), paper_obstacles())
-            }
-        };
+    /// The preset `chosen` of the task called `task`.
+    pub(super) fn preset(task: &str, preset: Preset, chosen: TaskPreset) -> Self {
         Config {
             preset,
             device: Choice::Auto,
             seed: 1,
             data: None,
-            steps: match kind {
-                Kind::Plane => 1_000_000,
-                Kind::Obstacles => 6_000_000,
-            },
+            steps: chosen.steps,
             max_time_s: None,
-            stop_success: None,
+            stop_at_success: None,
             evaluate_every: 20_000,
             checkpoint_every: 250_000,
-            weights: Weights::PAPER,
-            task,
-            ppo,
+            task: TaskConfig {
+                name: task.to_string(),
+                settings: chosen.settings,
+            },
+            ppo: chosen.ppo,
         }
     }
 
-    /// A run's own `config.toml`, whatever its task.
-    pub fn of_run(path: &Path) -> Result<Self, ConfigError> {
+    /// One of the presets of the task called `task`, changed by the keys that a TOML file names.
+    ///
+    /// # Errors
+    /// See [`ConfigError`].
+    pub(super) fn from_file(
+        path: &Path,
+        task: &str,
+        preset: Preset,
+        presets: fn(Preset) -> TaskPreset,
+    ) -> Result<Self, ConfigError> {
         let text = read(path)?;
-        // What is no TOML at all is told by `overlaid`.
-        let table: toml::Table = toml::from_str(&text).unwrap_or_default();
-        let kind = match table.contains_key("obstacles") {
-            true => Kind::Obstacles,
-            false => Kind::Plane,
-        };
-        Self::overlaid(path, &text, kind, Preset::default())
-    }
-
-    /// A preset changed by the keys a TOML file names.
-    pub fn from_file(path: &Path, kind: Kind, preset: Preset) -> Result<Self, ConfigError> {
-        Self::overlaid(path, &read(path)?, kind, preset)
-    }
-
-    fn overlaid(path: &Path, text: &str, kind: Kind, preset: Preset) -> Result<Self, ConfigError> {
-        let toml = |message: String| ConfigError::Toml {
-            path: path.to_path_buf(),
-            message: message.trim().replace("\nin `", ", in `"),
-        };
-        let changes: toml::Table = toml::from_str(text).map_err(|error| toml(error.to_string()))?;
+        let mut changes = parse(path, &text)?;
+        let version = changes.remove("version");
         let preset = match changes.get("preset") {
             Some(named @ toml::Value::String(_)) => {
-                Preset::deserialize(named.clone()).map_err(|error| toml(error.to_string()))?
+                let preset = Preset::deserialize(named.clone());
+                preset.map_err(|error| toml_error(path, &error))?
             }
             _ => preset,
         };
-        let mut table = Config::preset(kind, preset)
-            .complete()
-            .map_err(|error| toml(error.to_string()))?;
-        let names = names(&table, "");
-        overlay(&mut table, changes, "", &names).map_err(|mistake| ConfigError::Key {
-            path: path.to_path_buf(),
-            line: line_of(text, &mistake.key).unwrap_or(1),
-            problem: mistake.problem,
+        let in_file = |mistake: Mistake| match line_of(&text, &mistake.key) {
+            Some(line) => ConfigError::Key {
+                path: path.to_path_buf(),
+                line,
+                problem: mistake.problem,
+            },
+            None => ConfigError::Toml {
+                path: path.to_path_buf(),
+                message: mistake.problem,
+            },
+        };
+        let config = Config::preset(task, preset, presets(preset));
+        let config = config.changed(changes).map_err(|mistake| {
+            let written = version.as_ref().and_then(toml::Value::as_str);
+            let written = written.filter(|version| *version != VERSION);
+            let written = written.map(|version| format!(" (footwork {version} wrote this file)"));
+            in_file(Mistake {
+                problem: mistake.problem + &written.unwrap_or_default(),
+                ..mistake
+            })
         })?;
-        let mut config: Config = table
-            .try_into()
-            .map_err(|error: toml::de::Error| toml(error.to_string()))?;
+        match config.task.name == task {
+            true => Ok(config),
+            false => Err(in_file(Mistake {
+                key: "task.name".to_string(),
+                problem: format!("it is of the task `{}`, not of `{task}`", config.task.name),
+            })),
+        }
+    }
+
+    /// The name of the task in a run's `config.toml`.
+    ///
+    /// # Errors
+    /// It cannot be read, or an older version wrote it.
+    pub(super) fn task_of(path: &Path) -> Result<String, ConfigError> {
+        let table = parse(path, &read(path)?)?;
+        let name = table.get("task").and_then(|task| task.get("name"));
+        let name = name.and_then(toml::Value::as_str).map(String::from);
+        name.ok_or_else(|| ConfigError::Older {
+            path: path.to_path_buf(),
+        })
+    }
+
+    /// Changes one key, like `ppo.gamma`.
+    ///
+    /// # Errors
+    /// There is no such key, or it takes other values; the message has the nearest key.
+    pub fn set(&mut self, key: &str, value: toml::Value) -> Result<(), ConfigError> {
+        let mistaken = |problem: String| ConfigError::Set {
+            key: key.to_string(),
+            problem,
+        };
+        if matches!(key, "preset" | "task.name") {
+            return Err(mistaken("it decides what all else begins with: give `--preset` or another TASK".into()));
+        }
+        let names = key.rsplit('.');
+        let change = names.fold(value, |value, name| {
+            toml::Table::from_iter([(name.to_string(), value)]).into()
+        });
+        let toml::Value::Table(changes) = change else {
+            unreachable!("a key has a name")
+        };
+        *self = self.changed(changes).map_err(|mistake| mistaken(mistake.problem))?;
+        Ok(())
+    }
+
+    /// The choices with `changes` laid over them.
+    fn changed(&self, changes: toml::Table) -> Result<Config, Mistake> {
+        let mut all = self.complete();
+        let names = names(&all, "");
+        overlay(&mut all, changes, "", &names)?;
+        let mut config: Config = all.try_into().map_err(|error| Mistake {
+            key: String::new(),
+            problem: one_line(&error),
+        })?;
         config.data = config.data.filter(|data| !data.as_os_str().is_empty());
         config.max_time_s = config.max_time_s.filter(|&seconds| seconds != 0.0);
-        config.stop_success = config.stop_success.filter(|&success| success != 0.0);
+        config.stop_at_success = config.stop_at_success.filter(|&success| success != 0.0);
         Ok(config)
+    }
+
+    /// Every key there is, those without a value too.
+    fn complete(&self) -> toml::Table {
+        let mut all = table(self);
+        all.entry("data").or_insert("".into());
+        all.entry("max_time_s").or_insert(0.0.into());
+        all.entry("stop_at_success").or_insert(0.0.into());
+        all
+    }
+
+    /// The text of a `config.toml`: the version of this program, then every key that has a value.
+    pub fn to_toml(&self) -> String {
+        format!("version = \"{VERSION}\"\n{}", text(self))
     }
 
     /// Environment steps of an update.
@@ -164,17 +248,19 @@ impl Config {
         self.ppo.batch() as u64
     }
 
-    /// Every key there is, those without a value too.
-    fn complete(&self) -> Result<toml::Table, toml::ser::Error> {
-        let mut table = toml::Table::try_from(self)?;
-        table.entry("data").or_insert("".into());
-        table.entry("max_time_s").or_insert(0.0.into());
-        table.entry("stop_success").or_insert(0.0.into());
-        Ok(table)
+    /// The first key that decides over what is learned and has another value in the text of another
+    /// run's `config.toml`.
+    pub fn difference(&self, other: &str) -> Option<String> {
+        let decisive = |mut all: toml::Table| {
+            all.retain(|key, _| matches!(key, "seed" | "task" | "ppo"));
+            all
+        };
+        let other = toml::from_str(other).unwrap_or_default();
+        different(&decisive(table(self)), &decisive(other), "")
     }
 
-    /// Rejects what cannot work before anything is opened or written.
-    pub fn check(&self) -> Result<(), ConfigError> {
+    /// Refuses what cannot work, whatever the task.
+    pub(super) fn check(&self) -> Result<(), ConfigError> {
         const LONG: u64 = 1_000_000_000_000_000;
         within("steps", self.steps, 1, LONG)?;
         within("evaluate_every", self.evaluate_every, 1, LONG)?;
@@ -182,25 +268,10 @@ impl Config {
         if let Some(seconds) = self.max_time_s {
             within("max_time_s", seconds, 0.001, 1e9)?;
         }
-        if let Some(success) = self.stop_success {
-            within("stop_success", success, 0.01, 1.0)?;
+        if let Some(success) = self.stop_at_success {
+            within("stop_at_success", success, 0.01, 1.0)?;
         }
-        match &self.task {
-            Task::Plane(plane) => check_plane(plane)?,
-            Task::Obstacles(obstacles) => check_obstacles(obstacles, self.ppo.envs)?,
-        }
-        check_weights(&self.weights)?;
-        check_ppo(&self.ppo)?;
-        if self.ppo.horizon > self.task.max_steps() as usize {
-            return Err(ConfigError::Value {
-                key: "ppo.horizon",
-                value: self.ppo.horizon.to_string(),
-                why:
-                    "a rollout may hold one truncation an environment: at most the task's max_steps"
-                        .into(),
-            });
-        }
-        Ok(())
+        check_ppo(&self.ppo)
     }
 }
 
@@ -211,8 +282,43 @@ fn read(path: &Path) -> Result<String, ConfigError> {
     })
 }
 
-/// A number in its range, ends included; NaN is in none.
-fn within<N: PartialOrd + Display>(
+fn parse(path: &Path, text: &str) -> Result<toml::Table, ConfigError> {
+    toml::from_str(text).map_err(|error| toml_error(path, &error))
+}
+
+fn toml_error(path: &Path, error: &toml::de::Error) -> ConfigError {
+    ConfigError::Toml {
+        path: path.to_path_buf(),
+        message: one_line(error),
+    }
+}
+
+fn one_line(error: &toml::de::Error) -> String {
+    error.to_string().trim().replace("\nin `", ", in `")
+}
+
+/// Plain choices as TOML text.
+fn text(choices: &impl Serialize) -> String {
+    // Tables of numbers, words and lists always have a TOML form.
+    toml::to_string(choices).unwrap_or_default()
+}
+
+/// Plain choices as a TOML table. By way of the text, so that 0.1 in single precision stays 0.1.
+pub(super) fn table(choices: &impl Serialize) -> toml::Table {
+    toml::from_str(&text(choices)).unwrap_or_default()
+}
+
+/// The choices that a table holds.
+///
+/// # Errors
+/// It does not hold them, or others besides.
+pub(super) fn settings<T: DeserializeOwned>(table: &toml::Table) -> Result<T, ConfigError> {
+    let choices = table.clone().try_into();
+    choices.map_err(|error: toml::de::Error| ConfigError::Settings(one_line(&error)))
+}
+
+/// Refuses a number out of its range, ends included; NaN is in none.
+pub(super) fn within<N: PartialOrd + Display>(
     key: &'static str,
     value: N,
     least: N,
@@ -228,76 +334,15 @@ fn within<N: PartialOrd + Display>(
     })
 }
 
-fn check_plane(plane: &Plane) -> Result<(), ConfigError> {
-    within("plane.half_side", plane.half_side, 0.1, 1000.0)?;
-    within("plane.reach", plane.reach, 0.001, 1000.0)?;
-    within("plane.bonus", plane.bonus, -1e6, 1e6)?;
-    within("plane.max_steps", plane.max_steps, 1, 10_000)?;
-    if plane.reach < plane.half_side {
-        return Ok(());
-    }
-    Err(ConfigError::Value {
-        key: "plane.reach",
-        value: plane.reach.to_string(),
-        why: "no target can be drawn: it must be less than plane.half_side".into(),
-    })
-}
-
-fn check_obstacles(task: &Obstacles, envs: usize) -> Result<(), ConfigError> {
-    let boxes = envs.saturating_mul(task.count as usize);
-    // `reset` looks through all of them up to 32 times, and lavapipe stops after 65,535 iterations.
-    within("obstacles.count", task.count, 0, 2000)?;
-    within("ppo.envs times obstacles.count", boxes, 0, 1 << 23)?;
-    within("obstacles.side_min", task.side_min, 0.001, 1000.0)?;
-    within("obstacles.side_max", task.side_max, task.side_min, 1000.0)?;
-    within("obstacles.square", task.square, 0.1, 1000.0)?;
-    within("obstacles.margin", task.margin, 0.0, 1000.0)?;
-    if task.square <= 0.5 * task.side_max + task.margin {
-        return Err(ConfigError::Value {
-            key: "obstacles.square",
-            value: task.square.to_string(),
-            why: format!(
-                "the start cannot be kept clear: an obstacle of side {} with a margin of {} reaches it from everywhere; it must be over {}",
-                task.side_max,
-                task.margin,
-                0.5 * task.side_max + task.margin
-            ),
-        });
-    }
-    within("obstacles.edge", task.edge, 0.0, 100.0)?;
-    within("obstacles.look_back", task.look_back, 0.0, 10.0)?;
-    within("obstacles.speed", task.speed, 0.0, 100.0)?;
-    let (first, last) = (task.half_side_first, task.half_side_last);
-    within("obstacles.half_side_first", first, 0.1, 1000.0)?;
-    within("obstacles.half_side_last", last, 0.1, 1000.0)?;
-    within("obstacles.reach", task.reach, 0.001, 1000.0)?;
-    within("obstacles.reach", task.reach, 0.001, first.min(last))?;
-    within("obstacles.max_steps", task.max_steps, 1, 10_000)?;
-    within("obstacles.hit_reward", task.hit_reward, 0.0, 1e6)?;
-    within("obstacles.success_bonus", task.success_bonus, -1e6, 1e6)?;
-    within("obstacles.collision", task.collision, -1e6, 0.0)?;
-    within("obstacles.pass", task.pass, 0.0, 1.0)
-}
-
-fn check_weights(weights: &Weights) -> Result<(), ConfigError> {
-    within("weights.foot_position", weights.foot_position, 0.0, 1e3)?;
-    within("weights.foot_velocity", weights.foot_velocity, 0.0, 1e3)?;
-    within("weights.root_velocity", weights.root_velocity, 0.0, 1e3)?;
-    // Actions are divided by these.
-    let (position, direction) = (weights.trajectory_position, weights.trajectory_direction);
-    within("weights.trajectory_position", position, 1e-3, 1e3)?;
-    within("weights.trajectory_direction", direction, 1e-3, 1e3)
-}
-
 fn check_ppo(ppo: &Ppo) -> Result<(), ConfigError> {
     within("ppo.envs", ppo.envs, 1, 1 << 20)?;
-    within("ppo.horizon", ppo.horizon, 1, 10_000)?;
-    within("ppo.envs times ppo.horizon", ppo.batch(), 1, 1 << 23)?;
+    within("ppo.rollout_length", ppo.rollout_length, 1, 10_000)?;
+    within("ppo.envs times ppo.rollout_length", ppo.batch(), 1, 1 << 23)?;
     within("ppo.epochs", ppo.epochs, 1, 1000)?;
-    within("ppo.minibatch", ppo.minibatch, 1, 1 << 23)?;
+    within("ppo.minibatch_size", ppo.minibatch_size, 1, 1 << 23)?;
     within("ppo.learning_rate", ppo.learning_rate, 1e-9, 1.0)?;
-    within("ppo.final_rate", ppo.final_rate, 0.0, 1.0)?;
-    within("ppo.target_kl", ppo.target_kl, 0.0, 100.0)?;
+    within("ppo.final_lr_fraction", ppo.final_lr_fraction, 0.0, 1.0)?;
+    within("ppo.desired_kl", ppo.desired_kl, 0.0, 100.0)?;
     within("ppo.gamma", ppo.gamma, 0.0, 1.0)?;
     within("ppo.lambda", ppo.lambda, 0.0, 1.0)?;
     within("ppo.clip", ppo.clip, 1e-3, 100.0)?;
@@ -305,45 +350,9 @@ fn check_ppo(ppo: &Ppo) -> Result<(), ConfigError> {
     within("ppo.value_coefficient", ppo.value_coefficient, 0.0, 1e3)?;
     within("ppo.entropy_coefficient", ppo.entropy_coefficient, 0.0, 1e3)?;
     within("ppo.kl_coefficient", ppo.kl_coefficient, 0.0, 1e3)?;
-    within("ppo.kl_target", ppo.kl_target, 1e-6, 100.0)?;
-    within("ppo.max_gradient", ppo.max_gradient, 0.0, 1e6)?;
-    within("ppo.log_std", ppo.log_std, -10.0, 2.0)?;
-    check_network(&ppo.network)
-}
-
-fn check_network(network: &Network) -> Result<(), ConfigError> {
-    let (hidden, sight) = (&network.hidden, &network.sight);
-    within("the length of ppo.network.hidden", hidden.len(), 0, 8)?;
-    within("the length of ppo.network.sight", sight.len(), 0, 8)?;
-    for &width in hidden {
-        within("a width of ppo.network.hidden", width, 1, 2048)?;
-    }
-    for &width in sight {
-        within("a width of ppo.network.sight", width, 1, 2048)?;
-    }
-    for convolution in &network.convolutions {
-        within(
-            "filters of ppo.network.convolutions",
-            convolution.filters,
-            1,
-            256,
-        )?;
-        within("size of ppo.network.convolutions", convolution.size, 1, 16)?;
-        within(
-            "stride of ppo.network.convolutions",
-            convolution.stride,
-            1,
-            16,
-        )?;
-    }
-    match network.eyes() {
-        Some(_) => Ok(()),
-        None => Err(ConfigError::Value {
-            key: "ppo.network.convolutions",
-            value: format!("{:?}", network.convolutions),
-            why: "a filter is larger than what it sees: the maps are 16 x 16, and each convolution makes them smaller".into(),
-        }),
-    }
+    within("ppo.kl_penalty_target", ppo.kl_penalty_target, 1e-6, 100.0)?;
+    within("ppo.max_grad_norm", ppo.max_grad_norm, 0.0, 1e6)?;
+    within("ppo.init_log_std", ppo.init_log_std, -10.0, 2.0)
 }
 
 /// Writes `changes` over `table`, refusing keys that `table` does not know and values of another
@@ -357,7 +366,7 @@ fn overlay(
     for (key, value) in changes {
         let full = format!("{within}{key}");
         let put = match (table.get_mut(&key), value) {
-            (None, _) => Err(format!("unknown key `{full}`{}", hint(&key, names))),
+            (None, _) => Err(format!("unknown key `{full}`{}", nearest(&key, names.iter().map(String::as_str)))),
             (Some(toml::Value::Table(inner)), toml::Value::Table(changes)) => {
                 overlay(inner, changes, &format!("{full}."), names)?;
                 Ok(())
@@ -373,7 +382,7 @@ fn overlay(
 fn put(known: &mut toml::Value, value: toml::Value) -> Result<(), String> {
     match (known, value) {
         // Whole numbers stand for numbers.
-        (toml::Value::Float(known), toml::Value::Integer(state_u32)) => *known = state_u32 as f64,
+        (toml::Value::Float(known), toml::Value::Integer(whole)) => *known = whole as f64,
         (toml::Value::Integer(_), toml::Value::Integer(..0)) => {
             return Err("not be negative".to_string());
         }
@@ -398,21 +407,33 @@ fn names(table: &toml::Table, within: &str) -> Vec<String> {
     all
 }
 
-/// Which known key may have been meant, in whatever table it stands.
-fn hint(key: &str, names: &[String]) -> String {
+/// Which known name may have been meant, if there is any; names may have the tables they stand in
+/// before them.
+pub(super) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let last = |name: &str| name.rfind('.').map_or(0, |dot| dot + 1);
-    names
-        .iter()
-        .min_by_key(|name| strsim::damerau_levenshtein(key, &name[last(name)..]))
-        .map(|name| format!(", did you mean `{name}`?"))
-        .unwrap_or_default()
+    let nearest = known.min_by_key(|known| strsim::damerau_levenshtein(name, &known[last(known)..]));
+    nearest.map_or(String::new(), |known| format!(", did you mean `{known}`?"))
 }
 
 /// What is wrong with a key.
 struct Mistake {
-    /// With the tables it stands in, like `ppo.envs`.
+    /// With the tables it stands in, like `ppo.envs`; empty if it is not known which.
     key: String,
     problem: String,
+}
+
+/// The first key whose values differ, or that only one table has.
+fn different(one: &toml::Table, other: &toml::Table, within: &str) -> Option<String> {
+    let keys = one.keys().chain(other.keys());
+    keys.filter(|&key| one.get(key) != other.get(key)).find_map(|key| {
+        let full = format!("{within}{key}");
+        match (one.get(key), other.get(key)) {
+            (Some(toml::Value::Table(one)), Some(toml::Value::Table(other))) => {
+                different(one, other, &format!("{full}."))
+            }
+            _ => Some(full),
+        }
+    })
 }
 
 /// The line (from 1) of a TOML text that has a key, if the text is TOML and has it.
@@ -426,118 +447,5 @@ fn line_of(text: &str, key: &str) -> Option<usize> {
             (Some(_), toml::de::DeValue::Table(inner)) => table = inner,
             _ => return Some(1 + text[..name.span().start].matches('\n').count()),
         }
-    }
-}
-
-fn fast() -> Ppo {
-    Ppo {
-        envs: 256,
-        horizon: 16,
-        epochs: 3,
-        minibatch: 512,
-        learning_rate: 2e-3,
-        final_rate: 1.0,
-        anneal_steps: 0,
-        target_kl: 0.0,
-        gamma: 0.95,
-        lambda: 0.95,
-        clip: 0.2,
-        value_clip: 0.0,
-        value_coefficient: 0.5,
-        entropy_coefficient: 0.0,
-        kl_coefficient: 0.0,
-        kl_target: 0.01,
-        max_gradient: 1.0,
-        log_std: 0.0,
-        network: Network {
-            convolutions: Vec::new(),
-            sight: Vec::new(),
-            hidden: vec![32, 32],
-        },
-    }
-}
-
-fn paper() -> Ppo {
-    Ppo {
-        envs: 122,
-        horizon: 40,
-        epochs: 30,
-        minibatch: 128,
-        learning_rate: 5e-5,
-        final_rate: 1.0,
-        anneal_steps: 0,
-        target_kl: 0.0,
-        gamma: 0.99,
-        lambda: 1.0,
-        clip: 0.3,
-        value_clip: 10.0,
-        value_coefficient: 1.0,
-        entropy_coefficient: 0.0,
-        kl_coefficient: 0.2,
-        kl_target: 0.01,
-        max_gradient: 0.0,
-        // The paper names none. At 0 a seed in three is still wandering after 100,000 steps, at 0.3 one
-        // in four.
-        log_std: 0.6,
-        network: Network {
-            convolutions: Vec::new(),
-            sight: Vec::new(),
-            hidden: vec![32, 32],
-        },
-    }
-}
-
-/// Found by measuring: see `BENCHMARKS.md`.
-fn fast_obstacles() -> Ppo {
-    Ppo {
-        horizon: 32,
-        epochs: 4,
-        minibatch: 1024,
-        learning_rate: 7e-4,
-        final_rate: 0.05,
-        anneal_steps: 6_000_000,
-        gamma: 0.99,
-        // Wide: who never asks for a run does not learn to run.
-        log_std: 1.0,
-        network: Network {
-            convolutions: vec![
-                Convolution {
-                    filters: 16,
-                    size: 4,
-                    stride: 2,
-                },
-                Convolution {
-                    filters: 32,
-                    size: 3,
-                    stride: 2,
-                },
-            ],
-            sight: vec![128],
-            hidden: vec![256, 128],
-        },
-        ..fast()
-    }
-}
-
-/// The networks of the paper (its figure 3, right).
-fn paper_obstacles() -> Ppo {
-    Ppo {
-        network: Network {
-            convolutions: vec![
-                Convolution {
-                    filters: 16,
-                    size: 4,
-                    stride: 1,
-                },
-                Convolution {
-                    filters: 32,
-                    size: 3,
-                    stride: 1,
-                },
-            ],
-            sight: vec![128],
-            hidden: vec![256, 128],
-        },
-        ..paper()
     }
 }

@@ -1,21 +1,19 @@
-//! Judges a controller on a fixed set of episodes, each run to its end.
+//! Evaluates a controller of a motion-matching task on fixed episodes, each run to its end.
 
 use super::controller::Controller;
-use crate::kernels::locomotion::locomotion_layout::{state_f32};
+use super::evaluation::Evaluation;
+use crate::kernels::locomotion::locomotion_layout::state_f32;
 use crate::kernels::termination;
 use crate::kernels::rng::{random4, uniform01};
-use crate::motion::RATE;
-use crate::motion::database::Database;
-use crate::motion::features::FRAMES_PER_STEP;
+use crate::matching::MotionMatcher;
 use crate::env::locomotion::cpu::CpuLocomotion;
-use crate::env::locomotion::{LEVELS, Setup, Task};
+use crate::env::locomotion::{EnvConfig, LEVELS, LocomotionTask, STEP_S};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Seed of the evaluation episodes: the same for every controller.
 const EPISODES_SEED: u32 = 0x4556_414c;
-pub const SECONDS_A_STEP: f32 = FRAMES_PER_STEP as f32 / RATE;
 /// A character has turned to a new target once it nears it this fast, m/s.
 const NEARING: f32 = 0.5;
 /// Steps to wait for that.
@@ -25,15 +23,15 @@ const PATIENCE: u32 = 50;
 const LOITER_DISTANCE: f32 = 1.5;
 const LOITER_STEPS: u32 = 25;
 
-/// What an evaluation found.
+/// What the evaluation of a controller found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct LocomotionReport {
     pub episodes: usize,
-    /// Share of episodes that reached their target.
+    /// Fraction of episodes that reached their target.
     pub success: f64,
-    /// Share of episodes that ran into an obstacle.
+    /// Fraction of episodes that ran into an obstacle.
     pub collision: f64,
-    /// Share of episodes that stayed within 1.5 m of the target for over 5 s on end without reaching
+    /// Fraction of episodes that stayed within 1.5 m of the target for over 5 s on end without reaching
     /// it.
     pub loiter: f64,
     /// Over the successful episodes, s.
@@ -45,39 +43,70 @@ pub struct Report {
     pub mean_speed: f64,
     /// Over all episodes, s.
     pub episode_length_mean_s: f64,
-    /// On the plane, after the target has suddenly moved: time until the character nears the new one
+    /// Where there is no arena, after the target has suddenly moved: time until the character nears the new one
     /// at 0.5 m/s, s; 10 if it never does.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub turn_delay_mean_s: Option<f64>,
 }
 
-/// The evaluation episodes of a task on a level.
-pub fn episodes(database: &Arc<Database>, task: Task, level: u32, episodes: usize) -> CpuLocomotion {
-    let setup = Setup {
+impl LocomotionReport {
+    /// The report in the trainer's terms.
+    pub fn evaluation(&self) -> Evaluation {
+        let always = [
+            ("collision", self.collision),
+            ("loiter", self.loiter),
+            ("time_to_target_mean_s", self.time_to_target_mean_s),
+            ("time_to_target_p95_s", self.time_to_target_p95_s),
+            ("path_ratio", self.path_ratio),
+            ("mean_speed", self.mean_speed),
+            ("episode_length_mean_s", self.episode_length_mean_s),
+        ];
+        let delay = self.turn_delay_mean_s.map(|delay| ("turn_delay_mean_s", delay));
+        Evaluation {
+            episodes: self.episodes,
+            success: self.success,
+            measures: always.into_iter().chain(delay).collect(),
+        }
+    }
+}
+
+/// The first `count` evaluation episodes of a task on a level.
+pub fn episodes(
+    matcher: &Arc<MotionMatcher>,
+    task: LocomotionTask,
+    level: u32,
+    count: usize,
+) -> CpuLocomotion {
+    let config = EnvConfig {
         task,
-        envs: episodes,
-        horizon: 1,
+        envs: count,
         seed: EPISODES_SEED,
         level,
     };
-    CpuLocomotion::new(database.clone(), &setup, 0)
+    CpuLocomotion::new(matcher.clone(), &config)
 }
 
-/// One step of all worlds under a controller.
-pub fn advance(world: &mut CpuLocomotion, controller: &dyn Controller) -> Result<()> {
-    let action = controller.act(&world.observation(), world.rules.task.width())?;
-    world.play(&action);
+/// Plays one step of all environments under a controller.
+///
+/// # Errors
+/// See [`Controller::act`].
+pub fn advance(envs: &mut CpuLocomotion, controller: &dyn Controller) -> Result<()> {
+    let action = controller.act(&envs.observation(), envs.params.observation_dim())?;
+    envs.step_without_reset(&action);
     Ok(())
 }
 
-/// The hardest level, which reports are of if no other is named.
+/// Evaluates a controller on the hardest level.
+///
+/// # Errors
+/// See [`Controller::act`].
 pub fn hardest(
     controller: &dyn Controller,
-    database: &Arc<Database>,
-    task: Task,
+    matcher: &Arc<MotionMatcher>,
+    task: LocomotionTask,
     count: usize,
-) -> Result<Report> {
-    evaluate(controller, database, task, LEVELS - 1, count)
+) -> Result<LocomotionReport> {
+    evaluate(controller, matcher, task, LEVELS - 1, count)
 }
 
 /// Sums over episodes.
@@ -93,7 +122,7 @@ struct Found {
     delays: Vec<f64>,
 }
 
-/// One episode on the way.
+/// An episode under way.
 #[derive(Clone, Copy)]
 struct Episode {
     phase: Phase,
@@ -113,15 +142,19 @@ enum Phase {
     Done,
 }
 
-/// Runs `count` fixed episodes to their end, and on the plane after each arrival a change of target.
+/// Evaluates a controller on `count` fixed episodes, and where there is no arena on a change of target
+/// after each arrival.
+///
+/// # Errors
+/// See [`Controller::act`].
 pub fn evaluate(
     controller: &dyn Controller,
-    database: &Arc<Database>,
-    task: Task,
+    matcher: &Arc<MotionMatcher>,
+    task: LocomotionTask,
     level: u32,
     count: usize,
-) -> Result<Report> {
-    let mut world = episodes(database, task, level, count);
+) -> Result<LocomotionReport> {
+    let mut envs = episodes(matcher, task, level, count);
     let just_reset = Episode {
         phase: Phase::Reaching,
         near: 0,
@@ -130,13 +163,13 @@ pub fn evaluate(
     let mut running = vec![just_reset; count];
     let mut found = Found::default();
     for step in 1..=task.max_steps() + PATIENCE {
-        let before = world.state_f32.clone();
-        advance(&mut world, controller)?;
+        let before = envs.state_f32.clone();
+        advance(&mut envs, controller)?;
         for (env, episode) in running.iter_mut().enumerate() {
             match episode.phase {
-                Phase::Reaching => found.reaching(&mut world, env, episode, step),
+                Phase::Reaching => found.reaching(&mut envs, env, episode, step),
                 Phase::Turning { since } => {
-                    found.turning(&world, &before, env, episode, step - since)
+                    found.turning(&envs, &before, env, episode, step - since)
                 }
                 Phase::Done => {}
             }
@@ -149,7 +182,7 @@ pub fn evaluate(
         }
         // What is over need not be played on.
         if left.len() <= running.len() / 2 {
-            world.keep(&left);
+            envs.retain(&left);
             running = left.iter().map(|&env| running[env]).collect();
         }
     }
@@ -158,11 +191,11 @@ pub fn evaluate(
 
 impl Found {
     /// A step of a character under way to its target.
-    fn reaching(&mut self, world: &mut CpuLocomotion, env: usize, episode: &mut Episode, step: u32) {
-        let task = world.rules.task;
-        let near = distance(world, &world.state_f32, env) <= LOITER_DISTANCE;
+    fn reaching(&mut self, envs: &mut CpuLocomotion, env: usize, episode: &mut Episode, step: u32) {
+        let task = envs.params.task;
+        let near = distance(envs, &envs.state_f32, env) <= LOITER_DISTANCE;
         episode.near = if near { episode.near + 1 } else { 0 };
-        let termination = world.termination[env];
+        let termination = envs.termination[env];
         episode.loiters |= episode.near > LOITER_STEPS && termination != termination::SUCCESS;
         if termination == termination::RUNNING {
             return;
@@ -172,13 +205,13 @@ impl Found {
         self.collisions += usize::from(termination == termination::FAILED);
         episode.phase = Phase::Done;
         if termination == termination::SUCCESS {
-            let path = world.field(state_f32::TRAVELLED, env);
-            let straight = world.field(state_f32::X, env).hypot(world.field(state_f32::Z, env));
-            self.times.push(f64::from(step as f32 * SECONDS_A_STEP));
+            let path = envs.field(state_f32::TRAVELLED, env);
+            let straight = envs.field(state_f32::X, env).hypot(envs.field(state_f32::Z, env));
+            self.times.push(f64::from(step as f32 * STEP_S));
             self.ratios.push(f64::from(path / straight));
             self.walked += f64::from(path);
-            if let Task::Plane(_) = task {
-                send_elsewhere(world, env);
+            if turns(task) {
+                send_elsewhere(envs, env);
                 episode.phase = Phase::Turning { since: step };
             }
         }
@@ -187,24 +220,24 @@ impl Found {
     /// A step of a character whose target has moved, `waited` steps ago.
     fn turning(
         &mut self,
-        world: &CpuLocomotion,
+        envs: &CpuLocomotion,
         before: &[f32],
         env: usize,
         episode: &mut Episode,
         waited: u32,
     ) {
-        let nearer = distance(world, before, env) - distance(world, &world.state_f32, env);
-        if nearer / SECONDS_A_STEP >= NEARING || waited >= PATIENCE {
-            self.delays.push(f64::from(waited as f32 * SECONDS_A_STEP));
+        let nearer = distance(envs, before, env) - distance(envs, &envs.state_f32, env);
+        if nearer / STEP_S >= NEARING || waited >= PATIENCE {
+            self.delays.push(f64::from(waited as f32 * STEP_S));
             episode.phase = Phase::Done;
         }
     }
 
-    fn report(mut self, task: Task, episodes: usize) -> Report {
+    fn report(mut self, task: LocomotionTask, episodes: usize) -> LocomotionReport {
         self.times.sort_by(f64::total_cmp);
         let p95 = (self.times.len() * 95).div_ceil(100).saturating_sub(1);
         let share = |count: usize| count as f64 / episodes as f64;
-        Report {
+        LocomotionReport {
             episodes,
             success: share(self.times.len()),
             collision: share(self.collisions),
@@ -213,50 +246,52 @@ impl Found {
             time_to_target_p95_s: self.times.get(p95).copied().unwrap_or(0.0),
             path_ratio: mean(&self.ratios),
             mean_speed: self.walked / self.times.iter().sum::<f64>().max(1e-9),
-            episode_length_mean_s: self.steps * f64::from(SECONDS_A_STEP) / episodes as f64,
-            turn_delay_mean_s: match task {
-                Task::Plane(_) => Some(mean(&self.delays)),
-                Task::Obstacles(_) => None,
-            },
+            episode_length_mean_s: self.steps * f64::from(STEP_S) / episodes as f64,
+            turn_delay_mean_s: turns(task).then(|| mean(&self.delays)),
         }
     }
 }
 
-/// From a character to its target, m, in a state `real` of the world.
-fn distance(world: &CpuLocomotion, state_f32: &[f32], env: usize) -> f32 {
-    let at = |field: usize| state_f32[field * world.rules.envs + env];
+/// Whether an arrival is followed by a change of target.
+fn turns(task: LocomotionTask) -> bool {
+    task.arena_half_extent().is_none()
+}
+
+/// The distance from a character to its target, m, in a state of the environments.
+fn distance(envs: &CpuLocomotion, state_f32: &[f32], env: usize) -> f32 {
+    let at = |field: usize| state_f32[field * envs.params.envs + env];
     let x = at(state_f32::TARGET_X) - at(state_f32::X);
     x.hypot(at(state_f32::TARGET_Z) - at(state_f32::Z))
 }
 
-/// 0 of nothing, so that reports stay plain numbers.
+/// The mean; 0 of nothing, so that reports stay plain numbers.
 fn mean(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |sum, value| sum + value) / values.len().max(1) as f64
 }
 
-/// Moves one character's target to a random place of the task's square, at least 2 m (or two fifths
-/// of the square's half side) away, so that there is something to turn to. On the plane the square
-/// lies around the character; obstacles have their own, and the target stands clear of them.
-pub fn send_elsewhere(world: &mut CpuLocomotion, env: usize) {
+/// Moves one character's target to a random position of the task's square, at least 2 m (or two fifths
+/// of the square's half side) away, so that there is something to turn to. Without an arena the square
+/// is around the character; in an arena it is the arena's, and the target is clear of obstacles.
+pub fn send_elsewhere(envs: &mut CpuLocomotion, env: usize) {
     const STREAM: u32 = 0x5455_524e;
-    let (envs, half_side) = (world.rules.envs, world.rules.task.half_side(LEVELS - 1));
-    let at = [state_f32::X, state_f32::Z].map(|field| world.field(field, env));
-    let centre = match world.rules.task {
-        Task::Plane(_) => at,
-        Task::Obstacles(_) => [0.0; 2],
+    let (count, extent) = (envs.params.envs, envs.params.task.target_extent(LEVELS - 1));
+    let at = [state_f32::X, state_f32::Z].map(|field| envs.field(field, env));
+    let centre = match envs.params.task.arena_half_extent() {
+        None => at,
+        Some(_) => [0.0; 2],
     };
     // Keyed by where it stands, which does not change when others leave the batch.
     let bits = (0..).map(|draw| random4(EPISODES_SEED, at[0].to_bits(), draw, STREAM));
     let places = bits.map(|bits| {
-        let [x, z] = [bits[0], bits[1]].map(|b| (2.0 * uniform01(b) - 1.0) * half_side);
+        let [x, z] = [bits[0], bits[1]].map(|b| (2.0 * uniform01(b) - 1.0) * extent);
         [centre[0] + x, centre[1] + z]
     });
-    let least = (half_side * 0.4).min(2.0);
+    let least = (extent * 0.4).min(2.0);
     let far = |place: &[f32; 2]| (place[0] - at[0]).hypot(place[1] - at[1]) >= least;
     let place = places
         .take(64)
-        .find(|place| far(place) && !world.blocked(env, *place))
-        .unwrap_or(centre.map(|c| c + half_side));
-    world.state_f32[state_f32::TARGET_X * envs + env] = place[0];
-    world.state_f32[state_f32::TARGET_Z * envs + env] = place[1];
+        .find(|place| far(place) && !envs.blocked(env, *place))
+        .unwrap_or(centre.map(|c| c + extent));
+    envs.state_f32[state_f32::TARGET_X * count + env] = place[0];
+    envs.state_f32[state_f32::TARGET_Z * count + env] = place[1];
 }

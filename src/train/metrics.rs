@@ -1,16 +1,19 @@
-//! What every update writes down: a line of `metrics.jsonl` and TensorBoard's scalars.
+//! What every update writes down: a line of `metrics.jsonl`, and TensorBoard's scalars.
 
+use super::evaluation::Evaluation;
 use crate::report::events::EventWriter;
+use crate::rl::Iteration;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// One update.
+/// An update.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct UpdateMetrics {
     pub update: u64,
     /// Environment steps so far.
     pub steps: u64,
@@ -19,77 +22,98 @@ pub struct Row {
     /// Of the curriculum, in this update.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub level: Option<u32>,
-    /// Of the ten, before this update.
+    /// Levels passed before this update.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub levels_passed: Option<u32>,
     /// Episodes that ended in this update.
     pub episodes: f64,
-    /// Means over those episodes; nothing if none ended.
+    /// Means over those episodes; none if none ended.
     pub success: Option<f64>,
-    /// Ran into an obstacle.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub collision: Option<f64>,
-    /// Ran out of steps.
-    #[serde(default)]
-    pub truncation: Option<f64>,
     pub episode_return: Option<f64>,
     /// Steps.
     pub episode_length: Option<f64>,
-    pub policy_loss: f32,
-    pub value_loss: f32,
-    pub entropy: f32,
-    pub kl: f32,
-    pub clip_fraction: f32,
-    pub explained_variance: f32,
-    pub learning_rate: f64,
-    /// Of this update, and the seconds its parts took.
+    /// Environment steps a second in this update, and the seconds of its parts.
     pub steps_per_s: f64,
-    pub simulate_s: f64,
-    pub act_s: f64,
+    pub policy_s: f64,
+    pub env_s: f64,
     pub learn_s: f64,
-    /// Success and mean time to target (s) over the evaluation episodes, when they were run.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub evaluated_success: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub evaluated_time_s: Option<f64>,
+    /// Whatever else has a name: losses; means of the environments' own statistics over the episodes
+    /// that ended; and, when the evaluation episodes were run, what they found, as `evaluated_...`.
+    #[serde(flatten)]
+    pub named: BTreeMap<String, f32>,
 }
 
-impl Row {
-    /// Names and values of what TensorBoard shows, under the names everyone knows.
-    fn scalars(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let always = [
-            ("losses/policy_loss", self.policy_loss.into()),
-            ("losses/value_loss", self.value_loss.into()),
-            ("losses/entropy", self.entropy.into()),
-            ("losses/approx_kl", self.kl.into()),
-            ("losses/clipfrac", self.clip_fraction.into()),
-            ("losses/explained_variance", self.explained_variance.into()),
-            ("charts/learning_rate", self.learning_rate),
-            ("charts/SPS", self.steps_per_s),
-            ("time/simulate_s", self.simulate_s),
-            ("time/act_s", self.act_s),
-            ("time/learn_s", self.learn_s),
-        ];
-        let sometimes = [
+/// Statistics of every environment, which have fields of their own.
+const COMMON: [&str; 4] = ["episodes", "successes", "steps", "returns"];
+
+impl UpdateMetrics {
+    /// The losses, statistics and seconds of an update.
+    pub fn new(iteration: &Iteration) -> Self {
+        let stats = &iteration.stats;
+        let own = stats.iter().map(|(name, _)| name);
+        let own = own.filter(|name| !COMMON.contains(name));
+        let rates = own.filter_map(|name| Some((name, stats.mean(name)?)));
+        let named = iteration.losses.iter().copied().chain(rates);
+        UpdateMetrics {
+            episodes: stats.sum("episodes"),
+            success: stats.mean("successes"),
+            episode_return: stats.mean("returns"),
+            episode_length: stats.mean("steps"),
+            policy_s: iteration.policy_s,
+            env_s: iteration.env_s,
+            learn_s: iteration.learn_s,
+            named: named.map(|(name, value)| (name.to_string(), value as f32)).collect(),
+            ..UpdateMetrics::default()
+        }
+    }
+
+    /// Takes the result of an evaluation in.
+    pub fn evaluated(&mut self, found: &Evaluation) {
+        let success = [("success", found.success)];
+        let measures = found.measures.iter().map(|(name, value)| (*name, *value));
+        for (name, value) in success.into_iter().chain(measures) {
+            self.named.insert(format!("evaluated_{name}"), value as f32);
+        }
+    }
+
+    /// The mean of one of the environments' own statistics, by name.
+    pub fn rate(&self, name: &str) -> Option<f64> {
+        self.named.get(name).copied().map(f64::from)
+    }
+
+    /// Names and values of what TensorBoard shows.
+    fn scalars(&self) -> impl Iterator<Item = (String, f64)> {
+        let seconds = [
+            ("charts/SPS", Some(self.steps_per_s)),
+            ("time/policy_s", Some(self.policy_s)),
+            ("time/env_s", Some(self.env_s)),
+            ("time/learn_s", Some(self.learn_s)),
             ("charts/level", self.level.map(f64::from)),
             ("charts/success", self.success),
-            ("charts/collision", self.collision),
-            ("charts/truncation", self.truncation),
             ("charts/episodic_return", self.episode_return),
             ("charts/episodic_length", self.episode_length),
-            ("evaluation/success", self.evaluated_success),
-            ("evaluation/time_to_target_s", self.evaluated_time_s),
         ];
-        always.into_iter().chain(
-            sometimes
-                .into_iter()
-                .filter_map(|(name, value)| Some((name, value?))),
-        )
+        let fields = seconds.into_iter().filter_map(|(tag, value)| Some((tag.to_string(), value?)));
+        fields.chain(self.named.iter().map(|(name, value)| (tag(name), f64::from(*value))))
+    }
+}
+
+/// Where TensorBoard shows a name: the tags that CleanRL made common.
+fn tag(name: &str) -> String {
+    match name {
+        "kl" => "losses/approx_kl".to_string(),
+        "clip_fraction" => "losses/clipfrac".to_string(),
+        "entropy" | "explained_variance" | "grad_norm" => format!("losses/{name}"),
+        _ if name.ends_with("_loss") => format!("losses/{name}"),
+        _ => match name.strip_prefix("evaluated_") {
+            Some(measure) => format!("evaluation/{measure}"),
+            None => format!("charts/{name}"),
+        },
     }
 }
 
 /// Appends to a run's metrics and events.
-pub struct Recorder {
+pub struct MetricsWriter {
     lines: File,
     path: PathBuf,
     events: EventWriter,
@@ -97,7 +121,7 @@ pub struct Recorder {
 
 /// The rows of a `metrics.jsonl` up to a number of steps. Lines that a crash cut short end the
 /// reading.
-pub fn read(path: &Path, up_to: u64) -> Result<Vec<Row>> {
+pub fn read(path: &Path, up_to: u64) -> Result<Vec<UpdateMetrics>> {
     if !path.exists() {
         return Ok(Vec::new());
     }
@@ -109,13 +133,13 @@ pub fn read(path: &Path, up_to: u64) -> Result<Vec<Row>> {
     })?;
     let rows = text
         .lines()
-        .map_while(|line| serde_json::from_str::<Row>(line).ok());
+        .map_while(|line| serde_json::from_str::<UpdateMetrics>(line).ok());
     Ok(rows.take_while(|row| row.steps <= up_to).collect())
 }
 
-impl Recorder {
+impl MetricsWriter {
     /// Starts over with the rows that are known; new ones follow.
-    pub fn open(folder: &Path, known: &[Row]) -> Result<Self> {
+    pub fn open(folder: &Path, known: &[UpdateMetrics]) -> Result<Self> {
         let path = folder.join("metrics.jsonl");
         let mut text = String::new();
         for row in known {
@@ -126,7 +150,7 @@ impl Recorder {
         let lines = File::options().append(true).open(&path);
         let lines = lines.with_context(|| format!("cannot write {}", path.display()))?;
         let now = unix_time();
-        let mut recorder = Recorder {
+        let mut writer = MetricsWriter {
             lines,
             path,
             events: EventWriter::create(folder, now)?,
@@ -134,20 +158,20 @@ impl Recorder {
         // As if the run had gone on without the pause until now.
         let start = now - known.last().map_or(0.0, |row| row.wall_s);
         for row in known {
-            recorder.show(row, start + row.wall_s)?;
+            writer.show(row, start + row.wall_s)?;
         }
-        recorder.events.flush()?;
-        Ok(recorder)
+        writer.events.flush()?;
+        Ok(writer)
     }
 
-    fn show(&mut self, row: &Row, time: f64) -> Result<()> {
+    fn show(&mut self, row: &UpdateMetrics, time: f64) -> Result<()> {
         for (tag, value) in row.scalars() {
-            self.events.scalar(tag, row.steps, time, value)?;
+            self.events.scalar(&tag, row.steps, time, value)?;
         }
         Ok(())
     }
 
-    pub fn write(&mut self, row: &Row) -> Result<()> {
+    pub fn write(&mut self, row: &UpdateMetrics) -> Result<()> {
         let mut line = serde_json::to_string(row)?;
         line.push('\n');
         self.lines

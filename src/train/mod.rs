@@ -1,16 +1,25 @@
-//! A training run: what was asked for, the loop, what it leaves behind.
+//! Training: configuration, the loop, checkpoints, evaluation and figures.
+//!
+//! [`trainer`] and [`checkpoint`] know no task. A [`task`] is one value that opens environments,
+//! evaluates policies and draws figures; [`tasks`] is the list of them.
 
 pub mod ablation;
 pub mod checkpoint;
 pub mod config;
 pub mod controller;
 pub mod data;
+pub mod eval_report;
 pub mod evaluate;
-pub mod run_dir;
+pub mod evaluation;
 pub mod figures;
+pub mod locomotion;
+pub mod metrics;
 pub mod planner;
 pub mod progress;
-pub mod metrics;
 pub mod rendered_frames;
+pub mod run_dir;
+pub mod state;
+pub mod task;
+pub mod tasks;
 pub mod trainer;
 pub mod trajectories;

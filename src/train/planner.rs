@@ -1,15 +1,16 @@
-//! What full knowledge could reach: a beam search that sees every obstacle and plays every answer of
-//! the search forward before it chooses. What it cannot reach may still be reachable; what it does
+//! What full knowledge could reach: a beam search that sees every obstacle and plays every match
+//! forward before it chooses. What it cannot reach may still be reachable; what it does
 //! reach bounds from below what a policy might.
 
 use super::evaluate::episodes;
-use crate::kernels::locomotion::locomotion_layout::{state_f32};
+use crate::kernels::locomotion::locomotion_layout::state_f32;
 use crate::kernels::termination;
 use crate::motion::RATE;
 use crate::motion::database::Database;
 use crate::motion::features::{TRAJECTORY_OFFSETS, POSE_DIM, TRAJECTORY_DIM};
 use crate::motion::character_frame::to_local;
-use crate::env::locomotion::Task;
+use crate::env::locomotion::LocomotionTask;
+use crate::matching::MotionMatcher;
 use crate::env::locomotion::cpu::CpuLocomotion;
 use serde::Serialize;
 use std::collections::HashSet;
@@ -29,24 +30,24 @@ const SPEEDS: [f32; 2] = [1.2, 3.0];
 const DIRECTIONS: usize = 10;
 const ACTIONS: usize = SPEEDS.len() * (DIRECTIONS + 1) + 1;
 
-/// What was found.
+/// What the planner found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Planned {
     pub episodes: usize,
-    /// Share that a plan takes to the target.
+    /// Fraction that a plan takes to the target.
     pub success: f64,
 }
 
 /// Plans the first `count` evaluation episodes of a level.
-pub fn plan(database: &Arc<Database>, task: Task, level: u32, count: usize) -> Planned {
-    let all = episodes(database, task, level, count);
+pub fn plan(matcher: &Arc<MotionMatcher>, task: LocomotionTask, level: u32, count: usize) -> Planned {
+    let all = episodes(matcher, task, level, count);
     let ids: Vec<usize> = (0..count).collect();
     let reached: usize = ids
         .chunks(CHUNK)
         .map(|chunk| {
-            let mut world = all.clone();
-            world.keep(chunk);
-            explore(world, database)
+            let mut envs = all.clone();
+            envs.retain(chunk);
+            explore(envs, &matcher.database)
         })
         .sum();
     Planned {
@@ -55,44 +56,44 @@ pub fn plan(database: &Arc<Database>, task: Task, level: u32, count: usize) -> P
     }
 }
 
-/// How many of a world's episodes can be taken to their target.
-fn explore(mut world: CpuLocomotion, database: &Database) -> usize {
-    let count = world.rules.envs;
-    // Which episode each world tries.
+/// How many of a envs's episodes can be taken to their target.
+fn explore(mut envs: CpuLocomotion, database: &Database) -> usize {
+    let count = envs.params.envs;
+    // Which episode each envs tries.
     let mut episode: Vec<usize> = (0..count).collect();
     let mut reached = vec![false; count];
     for _ in 0..DEPTH {
         let children: Vec<usize> = (0..episode.len() * ACTIONS).map(|i| i / ACTIONS).collect();
-        world.keep(&children);
+        envs.retain(&children);
         episode = children.iter().map(|&parent| episode[parent]).collect();
-        let actions = actions(&world, database);
-        world.play(&actions);
+        let actions = actions(&envs, database);
+        envs.step_without_reset(&actions);
         for (env, &episode) in episode.iter().enumerate() {
-            reached[episode] |= world.termination[env] == termination::SUCCESS;
+            reached[episode] |= envs.termination[env] == termination::SUCCESS;
         }
         let chosen: Vec<usize> = (0..count)
             .filter(|&one| !reached[one])
-            .flat_map(|one| choose(&world, &episode, one))
+            .flat_map(|one| choose(&envs, &episode, one))
             .collect();
         if chosen.is_empty() {
             break;
         }
-        world.keep(&chosen);
+        envs.retain(&chosen);
         episode = chosen.iter().map(|&env| episode[env]).collect();
     }
     reached.into_iter().filter(|&reached| reached).count()
 }
 
-/// The worlds one episode goes on from: the nearest to the target, and some of the others for ways
+/// The envss one episode goes on from: the nearest to the target, and some of the others for ways
 /// around.
-fn choose(world: &CpuLocomotion, episode: &[usize], one: usize) -> Vec<usize> {
-    let at = |env: usize| [state_f32::X, state_f32::Z].map(|field| world.field(field, env));
+fn choose(envs: &CpuLocomotion, episode: &[usize], one: usize) -> Vec<usize> {
+    let at = |env: usize| [state_f32::X, state_f32::Z].map(|field| envs.field(field, env));
     let left = |env: usize| {
         let [x, z] = at(env);
-        (world.field(state_f32::TARGET_X, env) - x).hypot(world.field(state_f32::TARGET_Z, env) - z)
+        (envs.field(state_f32::TARGET_X, env) - x).hypot(envs.field(state_f32::TARGET_Z, env) - z)
     };
     let mut alive: Vec<usize> = (0..episode.len())
-        .filter(|&env| episode[env] == one && world.termination[env] == termination::RUNNING)
+        .filter(|&env| episode[env] == one && envs.termination[env] == termination::RUNNING)
         .collect();
     alive.sort_by(|&a, &b| left(a).total_cmp(&left(b)));
     let mut taken = HashSet::new();
@@ -104,12 +105,12 @@ fn choose(world: &CpuLocomotion, episode: &[usize], one: usize) -> Vec<usize> {
     alive.iter().take(near).chain(others).copied().collect()
 }
 
-/// Normalised actions: each world its own of the [`ACTIONS`] kinds, in turn.
-fn actions(world: &CpuLocomotion, database: &Database) -> Vec<f32> {
+/// Normalised actions: each envs its own of the [`ACTIONS`] kinds, in turn.
+fn actions(envs: &CpuLocomotion, database: &Database) -> Vec<f32> {
     let normal = &database.normalisation;
-    let mut actions = Vec::with_capacity(world.rules.envs * TRAJECTORY_DIM);
-    for env in 0..world.rules.envs {
-        let (direction, speed) = asked(world, env);
+    let mut actions = Vec::with_capacity(envs.params.envs * TRAJECTORY_DIM);
+    for env in 0..envs.params.envs {
+        let (direction, speed) = asked(envs, env);
         for (k, ahead) in TRAJECTORY_OFFSETS.iter().enumerate() {
             let far = speed * *ahead as f32 / RATE;
             let [x, z] = direction;
@@ -122,8 +123,8 @@ fn actions(world: &CpuLocomotion, database: &Database) -> Vec<f32> {
     actions
 }
 
-/// Direction in the character frame and speed of a world's kind of action.
-fn asked(world: &CpuLocomotion, env: usize) -> ([f32; 2], f32) {
+/// Direction in the character frame and speed of a envs's kind of action.
+fn asked(envs: &CpuLocomotion, env: usize) -> ([f32; 2], f32) {
     let kind = env % ACTIONS;
     if kind == ACTIONS - 1 {
         return ([0.0, 1.0], 0.0);
@@ -133,7 +134,7 @@ fn asked(world: &CpuLocomotion, env: usize) -> ([f32; 2], f32) {
         let angle = std::f32::consts::TAU * way as f32 / DIRECTIONS as f32;
         return ([angle.sin(), angle.cos()], speed);
     }
-    let field = |field: usize| world.field(field, env);
+    let field = |field: usize| envs.field(field, env);
     let offset = [
         field(state_f32::TARGET_X) - field(state_f32::X),
         field(state_f32::TARGET_Z) - field(state_f32::Z),

@@ -1,6 +1,7 @@
 //! A live line on a terminal, a plain line now and then otherwise.
 
-use super::metrics::Row;
+use super::metrics::UpdateMetrics;
+use super::state::RecentMeans;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -33,8 +34,8 @@ impl Progress {
         }
     }
 
-    /// `success` and `episode_return` are means over recent episodes.
-    pub fn show(&mut self, row: &Row, success: f64, episode_return: f64) {
+    /// Shows an update, with means over the latest episodes.
+    pub fn show(&mut self, row: &UpdateMetrics, recent: RecentMeans) {
         let rate = row.steps as f64 / row.wall_s.max(1e-9);
         let by_steps = self.steps.saturating_sub(row.steps) as f64 / rate.max(1e-9);
         let left = self
@@ -46,8 +47,8 @@ impl Progress {
             row.steps,
             row.level
                 .map_or(String::new(), |level| format!("  level {level}")),
-            100.0 * success,
-            episode_return,
+            100.0 * recent.success,
+            recent.episode_return,
             row.steps_per_s,
             clock(row.wall_s),
             clock(left),

@@ -1,6 +1,8 @@
 //! A run's folder and the files in it.
 
 use super::config::Config;
+use super::evaluation::Evaluation;
+use crate::container::write_whole;
 use anyhow::{Context, Result, bail};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -8,18 +10,20 @@ use std::path::{Path, PathBuf};
 /// How a training ended, written as `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
+    /// The program that wrote it.
+    pub version: &'static str,
     /// Environment steps, over all resumptions.
     pub steps: u64,
     /// Seconds of training, over all resumptions.
     pub wall_s: f64,
     pub steps_per_s: f64,
-    /// Over the evaluation episodes, at the end.
-    pub success: f64,
-    pub time_to_target_mean_s: f64,
+    /// Over the evaluation episodes, at the end: success, and what else the task measures. Nothing
+    /// succeeds after a failure.
+    #[serde(flatten)]
+    pub evaluation: Evaluation,
     /// Of the curriculum, at the end; the success is of the hardest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub level: Option<u32>,
-    /// Of the ten levels.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub levels_passed: Option<u32>,
     pub device: String,
@@ -31,9 +35,9 @@ pub struct Summary {
 /// A run's folder: `config.toml`, `metrics.jsonl`, TensorBoard events, `checkpoints/`, pictures,
 /// `summary.json`.
 #[derive(Clone, Debug)]
-pub struct Folder(PathBuf);
+pub struct RunDir(PathBuf);
 
-impl Folder {
+impl RunDir {
     /// Makes the folder of a new run: the given one, or the next free `runs/TASK-N`.
     pub fn create(given: Option<&Path>, task: &str) -> Result<Self> {
         let path = match given {
@@ -51,11 +55,11 @@ impl Folder {
                 path.display()
             );
         }
-        let folder = Folder(path);
-        std::fs::create_dir_all(folder.checkpoints())
-            .inspect_err(|_| folder.remove_empty())
-            .with_context(|| format!("cannot make the run folder {}", folder.0.display()))?;
-        Ok(folder)
+        let run = RunDir(path);
+        std::fs::create_dir_all(run.checkpoints())
+            .inspect_err(|_| run.remove_empty())
+            .with_context(|| format!("cannot make the run folder {}", run.0.display()))?;
+        Ok(run)
     }
 
     /// Takes the folder away again, if nothing could be written to it.
@@ -73,14 +77,14 @@ impl Folder {
                 path.display()
             );
         }
-        let folder = Folder(path.to_path_buf());
-        if !folder.config_path().exists() {
+        let run = RunDir(path.to_path_buf());
+        if !run.config_path().exists() {
             bail!(
                 "{} holds no run: its config.toml is missing",
                 path.display()
             );
         }
-        Ok(folder)
+        Ok(run)
     }
 
     pub fn path(&self) -> &Path {
@@ -91,7 +95,8 @@ impl Folder {
         self.0.join(name)
     }
 
-    fn config_path(&self) -> PathBuf {
+    /// Where its configuration is.
+    pub fn config_path(&self) -> PathBuf {
         self.file("config.toml")
     }
 
@@ -145,23 +150,21 @@ impl Folder {
         Ok(files)
     }
 
+    /// Writes `config.toml`.
+    ///
+    /// # Errors
+    /// It cannot be written.
     pub fn write_config(&self, config: &Config) -> Result<()> {
-        let text = toml::to_string(config).context("the configuration has no TOML form")?;
-        Ok(crate::container::write_whole(
-            &self.config_path(),
-            text.as_bytes(),
-        )?)
+        let text = config.to_toml();
+        Ok(write_whole(&self.config_path(), text.as_bytes())?)
     }
 
-    pub fn read_config(&self) -> Result<Config> {
-        Ok(Config::of_run(&self.config_path())?)
-    }
-
+    /// Writes `summary.json`.
+    ///
+    /// # Errors
+    /// It cannot be written.
     pub fn write_summary(&self, summary: &Summary) -> Result<()> {
         let text = serde_json::to_string_pretty(summary)? + "\n";
-        Ok(crate::container::write_whole(
-            &self.file("summary.json"),
-            text.as_bytes(),
-        )?)
+        Ok(write_whole(&self.file("summary.json"), text.as_bytes())?)
     }
 }

@@ -1,28 +1,22 @@
-//! The training loop: act, learn, write down, look whether to stop.
+//! The training loop: play and learn, write down, look whether to stop. It knows no task.
 
 use super::checkpoint::{Checkpoint, Header};
-use super::config::Config;
-use super::controller::Trained;
-use super::evaluate::{Report, hardest};
-use super::run_dir::{Folder, Summary};
-use super::figures;
+use super::config::{Config, VERSION};
+use super::evaluation::Evaluation;
+use super::metrics::{self, MetricsWriter, UpdateMetrics};
 use super::progress::Progress;
-use super::metrics::{self, Recorder, Row};
-use crate::gpu::Device;
-use crate::kernels::locomotion::locomotion_layout::state_u32;
-use crate::kernels::locomotion::episode_stats;
-use crate::motion::database::Database;
-use crate::rl::rollout::{self, Rollout};
-use crate::rl::ppo::update::{Learner, Losses};
-use crate::nn::tensors;
-use crate::env::curriculum::Curriculum;
+use super::run_dir::{RunDir, Summary};
+use super::state::TrainerState;
+use super::task::Task;
+use crate::env::EnvBatch;
 use crate::env::locomotion::live_view::LiveView;
-use crate::env::locomotion::{Batch, Setup, EpisodeStats, Task};
-use anyhow::{Context, Result, bail};
-use burn::tensor::Tensor;
-use serde::{Deserialize, Serialize};
+use crate::gpu::Device;
+use crate::rl::Algorithm;
+use crate::rl::ppo::PpoLearner;
+use anyhow::{Context, Result};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Episodes of an evaluation.
@@ -33,83 +27,23 @@ const GLANCE: usize = 100;
 const DOUBT: f64 = 0.03;
 /// Training success this far below the goal is worth a glance.
 const NEAR: f64 = 0.15;
-/// What an update reads back.
-const NUMBERS: [&str; 13] = [
-    "policy loss",
-    "value loss",
-    "entropy",
-    "KL divergence",
-    "clip fraction",
-    "explained variance",
-    "number of episodes",
-    "number of successes",
-    "number of collisions",
-    "number of truncations",
-    "number of steps",
-    "summed return",
-    "sum of the parameters",
-];
-/// Recent success and return are means over at least so many episodes.
-const RECENT: f64 = 500.0;
 
-/// What the trainer remembers from update to update; part of a checkpoint.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Memory {
-    /// Of the latest updates.
-    recent: Vec<EpisodeStats>,
-    /// Level, recent success and (negative) length of the best policy so far.
-    best: Option<(u32, f64, f64)>,
-    pub curriculum: Curriculum,
+/// What a training is of.
+#[derive(Clone, Copy)]
+pub struct Training<'a> {
+    pub config: &'a Config,
+    pub task: &'a dyn Task,
+    pub run: &'a RunDir,
+    pub device: &'a Device,
 }
 
-impl Memory {
-    fn new(task: &Task) -> Self {
-        Memory {
-            recent: Vec::new(),
-            best: None,
-            curriculum: Curriculum::on(task.first_level()),
-        }
-    }
-
-    fn remember(&mut self, tally: EpisodeStats) {
-        self.recent.push(tally);
-        let episodes = |recent: &[EpisodeStats]| recent.iter().map(|t| t.episodes).sum::<f64>();
-        while self.recent.len() > 1 && episodes(&self.recent[1..]) >= RECENT {
-            self.recent.remove(0);
-        }
-    }
-
-    /// Means over the recent episodes: success, steps, return. `None` before the first ended.
-    fn means(&self) -> Option<[f64; 3]> {
-        let sum = |of: fn(&EpisodeStats) -> f64| self.recent.iter().map(of).sum::<f64>();
-        let episodes = sum(|t| t.episodes);
-        let sums = [sum(|t| t.successes), sum(|t| t.steps), sum(|t| t.returns)];
-        (episodes > 0.0).then(|| sums.map(|sum| sum / episodes))
-    }
-
-    /// Whether the recent episodes are the best so far: a higher level, then more success, then
-    /// shorter.
-    fn improved(&mut self) -> bool {
-        let Some([success, length, _]) = self.means() else {
-            return false;
-        };
-        // Whole percents, so that noise in the success does not hide that the walks get shorter.
-        let score = (self.curriculum.passed, (success * 100.0).floor(), -length);
-        let better = self.best.is_none_or(|best| score > best);
-        if better {
-            self.best = Some(score);
-        }
-        better
-    }
-}
-
-/// For somebody who watches a training from another thread.
+/// What there is to see for somebody who watches a training from another thread.
 #[derive(Default)]
 pub struct Watch {
-    /// Once the worlds are open; taken by who draws them.
-    pub worlds: Mutex<Option<LiveView>>,
+    /// The environments, once they are open; taken by who draws them.
+    pub view: Mutex<Option<LiveView>>,
     /// The latest update.
-    pub row: Mutex<Option<Row>>,
+    pub row: Mutex<Option<UpdateMetrics>>,
 }
 
 impl Watch {
@@ -118,105 +52,78 @@ impl Watch {
     }
 }
 
-/// A run under way.
-struct Run<'a> {
-    config: &'a Config,
-    folder: &'a Folder,
-    database: &'a Arc<Database>,
-    device: &'a Device,
-    batch: Batch,
-    learner: Learner,
-    memory: Memory,
-    rows: Vec<Row>,
-    recorder: Recorder,
-    progress: Progress,
-    steps: u64,
-    /// Seconds before this process, and its start.
-    earlier_s: f64,
-    start: Instant,
-}
-
-/// Trains until a limit, the wished-for success or `interrupted`; with `from`, goes on where that
-/// checkpoint was taken; `watch` is kept up to date for who watches. Ends by writing checkpoint, pictures and `summary.json`.
+/// Trains until a limit, the wanted success or `interrupted`; with `from`, goes on where that checkpoint
+/// of the run was taken; `watch` is kept up to date for who watches. Ends by writing a checkpoint,
+/// figures and `summary.json`.
 ///
 /// # Errors
-/// A file cannot be written, the device is lost, or the losses are no longer finite. The last
-/// good checkpoint and everything before it stay as they are.
+/// The networks or the checkpoint do not fit, and nothing was written; or a file cannot be written, the
+/// device is lost, or the losses are no longer finite. The last good checkpoint and everything before it
+/// stay as they are.
 pub fn train(
-    config: &Config,
-    folder: &Folder,
-    database: &Arc<Database>,
-    device: &Device,
+    training: Training,
     from: Option<Checkpoint>,
     interrupted: &AtomicBool,
     watch: Option<&Watch>,
 ) -> Result<Summary> {
     // On a thread of the pool: another would fall asleep and be woken again at every parallel part.
     rayon::scope(|_| {
-        let mut run = Run::open(config, folder, database, device, from)?;
-        if let Some(watch) = watch {
-            Watch::leave(&watch.worlds, run.batch.watch()?);
+        let opened = Loop::open(training, from);
+        let mut state = opened.inspect_err(|_| training.run.remove_empty())?;
+        if let (Some(watch), Some(view)) = (watch, state.envs.live_view()?) {
+            Watch::leave(&watch.view, view);
         }
-        let stopped_by = run.advance(interrupted, watch);
+        let stopped_by = state.advance(interrupted, watch);
         let outcome = stopped_by.and_then(|by| {
-            run.save(&folder.checkpoint("last"))?;
+            state.save(&training.run.checkpoint("last"))?;
             Ok(by)
         });
-        run.progress.finish();
-        run.conclude(outcome)
+        state.progress.finish();
+        state.conclude(outcome)
     })
 }
 
-impl<'a> Run<'a> {
-    fn open(
-        config: &'a Config,
-        folder: &'a Folder,
-        database: &'a Arc<Database>,
-        device: &'a Device,
-        from: Option<Checkpoint>,
-    ) -> Result<Self> {
-        let ppo = &config.ppo;
-        let width = config.task.width();
-        let mut memory = Memory::new(&config.task);
-        let setup = Setup {
-            task: config.task,
-            envs: ppo.envs,
-            horizon: ppo.horizon,
-            seed: config.seed,
-            level: memory.curriculum.level(),
-        };
-        let mut batch = Batch::open(device, database, &setup);
-        let (mut steps, mut earlier_s) = (0, 0.0);
-        let learner = match from {
-            None => Learner::new(ppo, width, device, config.seed)?,
-            Some(checkpoint) => {
-                let (envs, frames) = (ppo.envs, database.frames());
-                let shown = &checkpoint.header.world.state_u32[state_u32::FRAME * envs..][..envs];
-                if let Some(frame) = shown.iter().find(|&&frame| frame as usize >= frames) {
-                    bail!(
-                        "the checkpoint shows frame {frame} of a database of {frames}: it is damaged"
-                    );
-                }
-                batch.restore(&checkpoint.header.world);
-                (steps, earlier_s) = (checkpoint.header.steps, checkpoint.header.wall_s);
-                memory = checkpoint.header.memory.clone();
-                checkpoint.learner(ppo, device)?
-            }
-        };
-        let rows = if steps > 0 {
-            metrics::read(&folder.file("metrics.jsonl"), steps)?
-        } else {
-            Vec::new()
-        };
-        Ok(Run {
+/// A training under way.
+struct Loop<'a> {
+    training: Training<'a>,
+    envs: EnvBatch,
+    learner: Box<dyn Algorithm>,
+    state: TrainerState,
+    rows: Vec<UpdateMetrics>,
+    writer: MetricsWriter,
+    progress: Progress,
+    /// Environment steps so far.
+    steps: u64,
+    /// Seconds before this process, and its start.
+    earlier_s: f64,
+    start: Instant,
+}
+
+impl<'a> Loop<'a> {
+    fn open(training: Training<'a>, from: Option<Checkpoint>) -> Result<Self> {
+        let Training {
             config,
-            folder,
-            database,
+            task,
+            run,
             device,
-            batch,
+        } = training;
+        let mut envs = task.open(device, config.ppo.envs, config.seed)?;
+        let learner = PpoLearner::new(&config.ppo, &envs.spec(), device, config.seed)?;
+        let mut learner: Box<dyn Algorithm> = Box::new(learner);
+        let (mut steps, mut earlier_s, mut state) = (0, 0.0, TrainerState::default());
+        let mut rows = Vec::new();
+        if let Some(checkpoint) = from {
+            (steps, earlier_s) = (checkpoint.header.steps, checkpoint.header.wall_s);
+            state = checkpoint.restore(&run.checkpoint("last"), &mut *learner, &mut envs)?;
+            rows = metrics::read(&run.file("metrics.jsonl"), steps)?;
+        }
+        run.write_config(config)?;
+        Ok(Loop {
+            training,
+            envs,
             learner,
-            memory,
-            recorder: Recorder::open(folder.path(), &rows)?,
+            state,
+            writer: MetricsWriter::open(run.path(), &rows)?,
             rows,
             progress: Progress::new(config.steps, config.max_time_s),
             steps,
@@ -231,15 +138,12 @@ impl<'a> Run<'a> {
 
     /// Updates until there is a reason to stop.
     fn advance(&mut self, interrupted: &AtomicBool, watch: Option<&Watch>) -> Result<&'static str> {
+        let config = self.training.config;
         loop {
-            if self.steps >= self.config.steps {
+            if self.steps >= config.steps {
                 return Ok("steps");
             }
-            if self
-                .config
-                .max_time_s
-                .is_some_and(|max| self.wall_s() >= max)
-            {
+            if config.max_time_s.is_some_and(|max| self.wall_s() >= max) {
                 return Ok("time");
             }
             if interrupted.load(Ordering::Relaxed) {
@@ -251,7 +155,7 @@ impl<'a> Run<'a> {
                 Watch::leave(&watch.row, row.clone());
             }
             let reached =
-                self.crossed(self.config.evaluate_every, before) && self.arrived(&mut row)?;
+                self.crossed(config.evaluate_every, before) && self.succeeded(&mut row)?;
             self.write_down(row)?;
             self.keep(before)?;
             if reached {
@@ -265,174 +169,128 @@ impl<'a> Run<'a> {
         before / every != self.steps / every
     }
 
-    fn update(&mut self) -> Result<Row> {
-        let ppo = &self.config.ppo;
-        let start = Instant::now();
-        let policy = self.learner.policy();
-        let rollout = rollout::collect(
-            &mut self.batch,
-            &policy,
-            &self.learner.scale,
-            ppo,
-            self.device,
-        )?;
-        let losses = self.learner.update(&rollout, ppo);
-        // The one read-back of an update. The parameters' sum shows whether the last step broke them.
-        let parameters = tensors::sum(self.learner.parameters.clone());
-        let numbers = Tensor::cat(vec![losses, self.batch.tally(), parameters], 0);
-        let numbers = tensors::read(numbers)?;
-        self.steps += ppo.batch() as u64;
-        if let Some(place) = numbers.iter().position(|number| !number.is_finite()) {
-            bail!(
-                "learning diverged: the {} of update {} is {}; checkpoints are from before it, if one was \
-                 due. Try a lower ppo.learning_rate",
-                NUMBERS[place],
-                self.learner.updates,
-                numbers[place]
-            );
-        }
-        let losses = Losses::from(&numbers);
-        let sums: [f32; episode_stats::SUMS] = std::array::from_fn(|i| numbers[6 + i]);
-        let tally = EpisodeStats::from(sums);
-        self.memory.remember(tally);
-        let row = self.row(losses, tally, &rollout, start.elapsed().as_secs_f64());
-        if let Task::Obstacles(task) = &self.config.task
-            && self.memory.curriculum.advance(&tally, task, ppo.envs)
-        {
-            self.batch.set_level(self.memory.curriculum.level());
-        }
-        self.learner.adapt(losses.kl, self.steps, ppo);
+    fn update(&mut self) -> Result<UpdateMetrics> {
+        let (start, batch) = (Instant::now(), self.training.config.batch());
+        let iteration = self.learner.iterate(&mut self.envs, self.steps)?;
+        self.steps += batch;
+        self.state.remember(&iteration.stats);
+        let row = UpdateMetrics {
+            update: self.steps / batch,
+            steps: self.steps,
+            wall_s: self.wall_s(),
+            level: self.level(),
+            levels_passed: self.levels_passed(),
+            steps_per_s: batch as f64 / start.elapsed().as_secs_f64(),
+            ..UpdateMetrics::new(&iteration)
+        };
+        self.envs.advance_curriculum(&iteration.stats);
         Ok(row)
     }
 
-    fn row(&self, losses: Losses, tally: EpisodeStats, rollout: &Rollout, total: f64) -> Row {
-        let per_episode = |sum: f64| (tally.episodes > 0.0).then(|| sum / tally.episodes);
-        let obstacles = matches!(self.config.task, Task::Obstacles(_));
-        Row {
-            update: self.learner.updates,
-            steps: self.steps,
-            wall_s: self.wall_s(),
-            level: obstacles.then(|| self.memory.curriculum.level()),
-            levels_passed: obstacles.then_some(self.memory.curriculum.passed),
-            episodes: tally.episodes,
-            success: per_episode(tally.successes),
-            collision: per_episode(tally.collisions).filter(|_| obstacles),
-            truncation: per_episode(tally.truncations),
-            episode_return: per_episode(tally.returns),
-            episode_length: per_episode(tally.steps),
-            policy_loss: losses.policy,
-            value_loss: losses.value,
-            entropy: losses.entropy,
-            kl: losses.kl,
-            clip_fraction: losses.clip_fraction,
-            explained_variance: losses.explained_variance,
-            learning_rate: self.learner.learning_rate,
-            steps_per_s: self.config.ppo.batch() as f64 / total,
-            simulate_s: rollout.simulate_s,
-            act_s: rollout.act_s,
-            learn_s: total - rollout.simulate_s - rollout.act_s,
-            evaluated_success: None,
-            evaluated_time_s: None,
-        }
+    fn level(&self) -> Option<u32> {
+        self.envs.curriculum.as_ref().map(|curriculum| curriculum.level())
     }
 
-    /// Whether the wished-for success is reached: judged on the fixed evaluation episodes, which
-    /// are only run when training looks near it, first a few, then all.
-    fn arrived(&self, row: &mut Row) -> Result<bool> {
-        let (Some(goal), Some([recent, ..])) = (self.config.stop_success, self.memory.means())
+    fn levels_passed(&self) -> Option<u32> {
+        self.envs.curriculum.as_ref().map(|curriculum| curriculum.passed)
+    }
+
+    /// Whether the wanted success is reached: on the fixed evaluation episodes, which are only run when
+    /// training looks near it, first a few, then all.
+    fn succeeded(&self, row: &mut UpdateMetrics) -> Result<bool> {
+        let (Some(goal), Some(recent)) = (self.training.config.stop_at_success, self.state.means())
         else {
             return Ok(false);
         };
-        if recent < goal - NEAR || self.judge(GLANCE)?.success < goal - DOUBT {
+        if recent.success < goal - NEAR || self.evaluate(GLANCE)?.success < goal - DOUBT {
             return Ok(false);
         }
-        let report = self.judge(EPISODES)?;
-        row.evaluated_success = Some(report.success);
-        row.evaluated_time_s = Some(report.time_to_target_mean_s);
-        Ok(report.success >= goal)
+        let found = self.evaluate(EPISODES)?;
+        row.evaluated(&found);
+        Ok(found.success >= goal)
     }
 
-    fn judge(&self, episodes: usize) -> Result<Report> {
-        let parameters = tensors::read(self.learner.parameters.clone())?;
-        let policy = Trained::new(&self.learner.shape, &parameters);
-        hardest(&policy, self.database, self.config.task, episodes)
+    fn evaluate(&self, episodes: usize) -> Result<Evaluation> {
+        self.training.task.evaluate(&self.learner.policy()?, episodes)
     }
 
-    fn write_down(&mut self, row: Row) -> Result<()> {
-        self.recorder.write(&row)?;
-        let [success, _, episode_return] = self.memory.means().unwrap_or_default();
-        self.progress.show(&row, success, episode_return);
+    fn write_down(&mut self, row: UpdateMetrics) -> Result<()> {
+        self.writer.write(&row)?;
+        self.progress.show(&row, self.state.means().unwrap_or_default());
         self.rows.push(row);
         Ok(())
     }
 
     /// Saves what this update has earned: periodic, milestone and best checkpoints.
     fn keep(&mut self, before: u64) -> Result<()> {
+        let Training {
+            config, task, run, ..
+        } = self.training;
         // The best is looked for as often as success is, and before what follows is saved, which
         // remembers it.
-        if self.crossed(self.config.evaluate_every, before) && self.memory.improved() {
-            self.save(&self.folder.checkpoint("best"))?;
+        if self.crossed(config.evaluate_every, before)
+            && self.state.improved(self.levels_passed().unwrap_or(0))
+        {
+            self.save(&run.checkpoint("best"))?;
         }
-        for steps in figures::crossed(before, self.steps) {
-            self.save(&self.folder.checkpoint_at(steps))?;
+        let passed = |steps: &u64| before < *steps && *steps <= self.steps;
+        for &steps in task.milestones().iter().filter(|steps| passed(steps)) {
+            self.save(&run.checkpoint_at(steps))?;
         }
-        if self.crossed(self.config.checkpoint_every, before) {
-            let every = self.config.checkpoint_every;
-            self.save(&self.folder.checkpoint_at(self.steps / every * every))?;
-            self.save(&self.folder.checkpoint("last"))?;
+        if self.crossed(config.checkpoint_every, before) {
+            let every = config.checkpoint_every;
+            self.save(&run.checkpoint_at(self.steps / every * every))?;
+            self.save(&run.checkpoint("last"))?;
         }
         Ok(())
     }
 
-    fn save(&self, path: &std::path::Path) -> Result<()> {
+    fn save(&self, path: &Path) -> Result<()> {
+        let Training { config, task, .. } = self.training;
         let header = Header {
-            task: self.config.task,
-            observation: self.config.task.width(),
-            database: self.database.fingerprint,
-            network: self.config.ppo.network.clone(),
-            ppo: self.config.ppo.to_toml(),
-            seed: self.config.seed,
+            version: VERSION.to_string(),
+            task: config.task.name.clone(),
+            spec: self.envs.spec(),
+            fingerprint: task.fingerprint(),
+            config: config.to_toml(),
             steps: self.steps,
             wall_s: self.wall_s(),
-            updates: self.learner.updates,
-            rates: [self.learner.learning_rate, self.learner.kl_coefficient],
-            adam_steps: self.learner.adam.steps,
-            scale_updates: self.learner.scale.updates,
-            world: self.batch.snapshot()?,
-            memory: self.memory.clone(),
         };
-        Ok(Checkpoint::take(header, &self.learner)?.save(path)?)
+        let checkpoint = Checkpoint::take(header, &*self.learner, &self.envs, &self.state)?;
+        Ok(checkpoint.save(path)?)
     }
 
-    /// Final evaluation, summary and pictures. After a failure only the summary is written.
+    /// Final evaluation, summary and figures. After a failure only the summary is written.
     fn conclude(self, outcome: Result<&'static str>) -> Result<Summary> {
+        let Training {
+            config,
+            task,
+            run,
+            device,
+        } = self.training;
         let wall_s = self.wall_s();
-        let obstacles = matches!(self.config.task, Task::Obstacles(_));
         let mut summary = Summary {
+            version: VERSION,
             steps: self.steps,
             wall_s,
             steps_per_s: self.steps as f64 / wall_s.max(1e-9),
-            success: 0.0,
-            time_to_target_mean_s: 0.0,
-            level: obstacles.then(|| self.memory.curriculum.level()),
-            levels_passed: obstacles.then_some(self.memory.curriculum.passed),
-            device: self.device.name(),
-            seed: self.config.seed,
+            evaluation: Evaluation::default(),
+            level: self.level(),
+            levels_passed: self.levels_passed(),
+            device: device.name(),
+            seed: config.seed,
             stopped_by: "failure",
         };
         match outcome {
             Ok(by) => {
-                let report = self.judge(EPISODES)?;
                 summary.stopped_by = by;
-                summary.success = report.success;
-                summary.time_to_target_mean_s = report.time_to_target_mean_s;
-                self.folder.write_summary(&summary)?;
-                figures::draw(self.folder, &self.rows, self.database, self.config.task)?;
+                summary.evaluation = self.evaluate(EPISODES)?;
+                run.write_summary(&summary)?;
+                task.figures(run, &self.rows)?;
                 Ok(summary)
             }
             Err(error) => {
-                self.folder
-                    .write_summary(&summary)
+                run.write_summary(&summary)
                     .context(format!("{error:#}; then"))?;
                 Err(error)
             }

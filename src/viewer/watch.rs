@@ -4,7 +4,7 @@ use super::pace::Pace;
 use super::screen::Screen;
 use crate::gpu::Gpu;
 use crate::motion::database::Database;
-use crate::train::metrics::Row;
+use crate::train::metrics::UpdateMetrics;
 use crate::train::trainer::Watch;
 use crate::view::painter::Drawable;
 use crate::view::{Camera, Crowd, Scene};
@@ -71,14 +71,14 @@ impl Crowded {
     }
 
     fn open(&mut self) {
-        let mut worlds = self
+        let mut view = self
             .watch
-            .worlds
+            .view
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        if let Some(worlds) = worlds.take() {
+        if let Some(view) = view.take() {
             let renderer = &self.screen.renderer;
-            let crowd = Crowd::new(renderer, &self.database, worlds, &self.task, self.envs);
+            let crowd = Crowd::new(renderer, &self.database, view, &self.task, self.envs);
             self.camera.distance = 8.0 + 0.6 * crowd.side;
             self.camera.pitch = 0.5;
             self.crowd = Some(crowd);
@@ -87,7 +87,7 @@ impl Crowded {
 }
 
 /// An update in a line.
-fn told(row: &Row) -> String {
+fn told(row: &UpdateMetrics) -> String {
     let level = row
         .level
         .map_or(String::new(), |level| format!("level {level}  "));

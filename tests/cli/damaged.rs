@@ -35,10 +35,13 @@ fn change(bytes: &[u8], at: &str, value: Value) -> Vec<u8> {
     seal(bytes, &header, &arrays)
 }
 
-/// Puts a NaN where the arrays begin.
-fn with_nan(bytes: &[u8]) -> Vec<u8> {
+/// Puts a NaN where an array begins.
+fn with_nan(bytes: &[u8], name: &str) -> Vec<u8> {
     let (header, mut arrays) = open(bytes);
-    arrays[..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    let listed = header["arrays"].as_array().unwrap().iter();
+    let before = listed.take_while(|array| array[0] != name);
+    let at = 4 * before.map(|array| array[1].as_u64().unwrap()).sum::<u64>() as usize;
+    arrays[at..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
     seal(bytes, &header, &arrays)
 }
 
@@ -91,7 +94,7 @@ fn databases_that_are_none_are_refused() {
         (newer(&good), "use a newer footwork"),
         (seal(&good, &header, &longer), "longer than its contents"),
         (seal(&good, &header, &arrays[8..]), "`rotations` is cut off"),
-        (with_nan(&good), "not finite"),
+        (with_nan(&good, "features"), "not finite"),
         (
             change(&good, "/header/frames", json!(1)),
             "do not fit together",
@@ -137,30 +140,34 @@ fn checkpoints_that_are_none_are_refused() {
         ),
         (good[..good.len() / 2].to_vec(), "is damaged (its checksum"),
         (newer(&good), "use a newer footwork"),
-        (with_nan(&good), "not finite"),
+        (with_nan(&good, "policy/parameters"), "not finite"),
         (
-            change(&good, "/header/task", json!({"stairs": {}})),
-            "unknown variant `stairs`",
+            change(&good, "/header/run/run/task", json!("stairs")),
+            "is of the task `stairs`, not of `plane`",
         ),
         (
-            change(&good, "/header/observation", json!(40)),
-            "its network does not fit its task",
+            change(&good, "/header/run/run/spec/observation/vector", json!(40)),
+            "with 40 observations and 12 actions, not with 17 observations",
         ),
         (
-            change(&good, "/header/database", json!(7)),
+            change(&good, "/header/run/run/fingerprint", json!(7)),
             "fingerprint 00000007",
         ),
         (
-            change(&good, "/header/network/hidden", json!([16, 16])),
-            "do not fit together",
+            change(&good, "/header/run", json!({})),
+            "it has no `run`",
+        ),
+        (
+            change(&good, "/header/policy/network/hidden", json!([16, 16])),
+            "`parameters` has",
         ),
         (
             change(
                 &good,
-                "/header/network/hidden",
+                "/header/policy/network/hidden",
                 json!([1u64 << 40, 1u64 << 40]),
             ),
-            "do not fit together",
+            "layer of width",
         ),
     ] {
         place.write(LAST, contents);
@@ -170,6 +177,14 @@ fn checkpoints_that_are_none_are_refused() {
             1,
             &[part, "last.ckpt"],
         );
+    }
+    // What only a resumed training needs.
+    for (name, part) in [
+        ("learner/rates", "its rates are not finite"),
+        ("envs.0/state_f32", "not finite"),
+    ] {
+        place.write(LAST, with_nan(&good, name));
+        place.refused("train plane --resume run --steps 10240", 1, &[part, "last.ckpt"]);
     }
     std::fs::remove_file(place.path(LAST)).unwrap();
     place.refused(
@@ -187,8 +202,8 @@ fn a_run_whose_data_or_configuration_changed_is_not_resumed() {
     let config = place.read("run/config.toml");
     for (was, is, key) in [
         ("envs = 64", "envs = 32", "`ppo.envs`"),
-        ("hidden = [32, 32]", "hidden = [16, 16]", "`ppo.network`"),
-        ("half_side = 5.0", "half_side = 4.0", "`plane`"),
+        ("hidden = [32, 32]", "hidden = [16, 16]", "`ppo.network.hidden`"),
+        ("target_extent = 5.0", "target_extent = 4.0", "`task.target_extent`"),
         ("seed = 1", "seed = 2", "`seed`"),
     ] {
         assert!(config.contains(was));
@@ -204,9 +219,9 @@ fn a_run_whose_data_or_configuration_changed_is_not_resumed() {
     place.refused(
         resume,
         1,
-        &["was trained with another database", "last.ckpt"],
+        &["was trained with other data", "last.ckpt"],
     );
-    place.refused("eval run", 1, &["was trained with another database"]);
+    place.refused("eval run", 1, &["was trained with other data"]);
     std::fs::remove_file(place.path("small.footwork")).unwrap();
     place.refused(resume, 1, &["cannot read", "small.footwork"]);
 }

@@ -32,7 +32,7 @@ fn synthetic_motion_can_be_looked_at() {
     let place = Place::new();
     let made = place.done("data synth --minutes 3 --out small.footwork");
     assert!(made.out.contains("3.0 minutes"), "{made:?}");
-    let info = place.done("data info small.footwork --picture coverage.png");
+    let info = place.done("data info small.footwork --plot coverage.png");
     for part in [
         "synthetic_000",
         "CC0-1.0",

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 /// Small networks: what is tested here is not how well they learn.
 const SMALL: &str =
-    "[ppo]\nhorizon = 16\nminibatch = 512\n[ppo.network]\nsight = [16]\nhidden = [16]\n";
+    "[ppo]\nrollout_length = 16\nminibatch_size = 512\n[ppo.network]\nencoder_hidden = [16]\nhidden = [16]\n";
 const TRAIN: &str =
     "train obstacles --data small.footwork --device cpu --envs 64 --config small.toml";
 
@@ -29,27 +29,27 @@ fn a_run_among_obstacles_shows_its_levels_and_its_walks() {
     }
 
     let told = place.done("eval run --episodes 40 --json");
-    let judged: Value = serde_json::from_str(&told.out).unwrap();
-    let levels = judged["levels"].as_array().unwrap();
+    let found: Value = serde_json::from_str(&told.out).unwrap();
+    let levels = found["levels"].as_array().unwrap();
     assert_eq!(levels.len(), 10);
-    for (level, found) in levels.iter().enumerate() {
-        assert_eq!(found["level"], level);
+    for (level, one) in levels.iter().enumerate() {
+        assert_eq!(one["level"], level);
         for key in ["success", "collision", "loiter"] {
-            let share = found[key].as_f64().unwrap();
-            assert!((0.0..=1.0).contains(&share), "{key} of {found}");
+            let fraction = one[key].as_f64().unwrap();
+            assert!((0.0..=1.0).contains(&fraction), "{key} of {one}");
         }
     }
-    assert_eq!(levels[9]["success"], judged["success"]);
-    assert!(keys(&judged).contains(&"time_to_target_p95_s"));
+    assert_eq!(levels[9]["success"], found["success"]);
+    assert!(keys(&found).contains(&"time_to_target_p95_s"));
 
-    let told = place.done("eval run --episodes 5 --motion --json");
-    let judged: Value = serde_json::from_str(&told.out).unwrap();
+    let told = place.done("eval run --episodes 5 --motion-quality --json");
+    let found: Value = serde_json::from_str(&told.out).unwrap();
     for style in ["recorded", "raw", "simple", "stitched", "locked"] {
-        let quality = &judged["motion"][style];
+        let quality = &found["motion"][style];
         assert!(quality["foot_skate_cm_s"].is_number(), "{style}: {quality}");
         assert!(quality["jerk"].is_number(), "{style}: {quality}");
     }
-    let told = place.done("eval run --episodes 5 --motion");
+    let told = place.done("eval run --episodes 5 --motion-quality");
     assert!(told.out.contains("stitching and foot locking"));
 
     let told = place.done("eval run --episodes 20 --baseline");
@@ -79,34 +79,35 @@ fn obstacles_that_make_no_sense_are_refused() {
     for (text, parts) in [
         (
             "count = -1",
-            &["`obstacles.count` must not be negative"][..],
+            &["`task.count` must not be negative"][..],
         ),
-        ("side_min = 0", &["obstacles.side_min is 0"]),
-        ("side_min = -1", &["obstacles.side_min is -1"]),
-        ("side_max = 0.2", &["obstacles.side_max is 0.2"]),
-        ("speed = -0.5", &["obstacles.speed is -0.5"]),
-        ("speed = nan", &["obstacles.speed is NaN"]),
-        ("edge = -0.1", &["obstacles.edge is -0.1"]),
-        ("look_back = 11", &["obstacles.look_back is 11"]),
+        ("side_min = 0", &["task.side_min is 0"]),
+        ("side_min = -1", &["task.side_min is -1"]),
+        ("side_max = 0.2", &["task.side_max is 0.2"]),
+        ("speed = -0.5", &["task.speed is -0.5"]),
+        ("speed = nan", &["task.speed is NaN"]),
+        ("map_edge_width = -0.1", &["task.map_edge_width is -0.1"]),
+        ("map_history_s = 11", &["task.map_history_s is 11"]),
         (
-            "square = 2",
-            &["obstacles.square is 2", "start cannot be kept clear"],
+            "arena_half_extent = 2",
+            &["task.arena_half_extent is 2", "start cannot be kept clear"],
         ),
-        ("reach = 3", &["obstacles.reach is 3"]),
-        ("pass = 1.5", &["obstacles.pass is 1.5"]),
-        ("arrival = \"stay\"", &["unknown variant `stay`"]),
-        ("motoin = \"same\"", &["did you mean `obstacles.motion`"]),
+        ("success_radius = 3", &["task.success_radius is 3"]),
+        ("promotion_success = 1.5", &["task.promotion_success is 1.5"]),
+        ("reward = \"stay\"", &["[task]: unknown variant `stay`"]),
+        ("success_is_terminal = 1", &["`task.success_is_terminal` must be of the type boolean"]),
+        ("speed_distributoin = \"same\"", &["did you mean `task.speed_distribution`"]),
     ] {
-        place.write("bad.toml", format!("[obstacles]\n{text}"));
+        place.write("bad.toml", format!("[task]\n{text}"));
         let train = "train obstacles --data small.footwork --device cpu";
         place.refused(&format!("{train} --config bad.toml --out run"), 2, parts);
     }
     for (text, part) in [
-        ("size = 17", "size of ppo.network.convolutions is 17"),
-        ("size = 0", "size of ppo.network.convolutions is 0"),
+        ("size = 17", "ppo.network.convolutions has a filter size of 17"),
+        ("size = 0", "ppo.network.convolutions has a filter size of 0"),
         (
             "filters = 1000",
-            "filters of ppo.network.convolutions is 1000",
+            "ppo.network.convolutions has a number of filters of 1000",
         ),
     ] {
         let rest = ["filters = 8", "size = 4", "stride = 1"];
@@ -125,9 +126,9 @@ fn obstacles_that_make_no_sense_are_refused() {
         format!("[ppo.network]\nconvolutions = [{twice}, {twice}]"),
     );
     let words = "train obstacles --data small.footwork --config bad.toml --out run";
-    place.refused(words, 2, &["a filter is larger than what it sees"]);
-    place.write("bad.toml", "[plane]\nreach = 1");
-    place.refused(words, 2, &["unknown key `plane`"]);
+    place.refused(words, 2, &["ppo.network.convolutions has a filter of 9 x 9 cells over an input of 8 x 8"]);
+    place.write("bad.toml", "[obstacles]\nreach = 1");
+    place.refused(words, 2, &["unknown key `obstacles`"]);
 }
 
 #[test]
@@ -143,15 +144,15 @@ fn runs_of_one_task_are_not_gone_on_with_as_another() {
         .done("train plane --data small.footwork --device cpu --envs 64 --steps 1024 --out plane");
     assert!(plane.out.contains("1024 steps"), "{plane:?}");
     place.refused(
-        "eval plane --plan 3",
+        "eval plane --planner 3",
         2,
-        &["--plan is for runs among obstacles"],
+        &["--planner is for runs among obstacles"],
     );
     // A checkpoint that strayed into the run of another task.
     let stray = std::fs::read(place.path("plane/checkpoints/last.ckpt")).unwrap();
     place.write("run/checkpoints/last.ckpt", stray);
     for words in ["eval run", "train obstacles --resume run --steps 2048"] {
-        let parts = ["of the task `plane` with 17 observations, not of `obstacles` with 529"];
+        let parts = ["of the task `plane`, not of `obstacles`"];
         place.refused(words, 1, &parts);
     }
 }

@@ -24,7 +24,7 @@ fn nothing_is_made_where_nothing_can_be() {
         place.refused(&words, 1, &["cannot make the run folder", out]);
     }
     for picture in ["small.footwork/x.png", "/proc/x.png", "walk"] {
-        let words = format!("data info small.footwork --picture {picture}");
+        let words = format!("data info small.footwork --plot {picture}");
         place.refused(&words, 1, &["cannot write the picture", picture]);
     }
 }
@@ -55,7 +55,7 @@ fn a_full_disk_leaves_no_part_of_a_file() {
     let before = place.list();
     let told = run_cramped(&place, 100, "data synth --minutes 1 --out new.footwork");
     told.is_refusal(1, &["cannot write new.footwork", "free space"]);
-    let told = run_cramped(&place, 10, "data info small.footwork --picture new.png");
+    let told = run_cramped(&place, 10, "data info small.footwork --plot new.png");
     told.is_refusal(1, &["cannot write the picture new.png"]);
     let told = run_cramped(&place, 0, &format!("{TRAIN} --steps 1024 --out run"));
     told.is_refusal(1, &["cannot write run/config.toml"]);

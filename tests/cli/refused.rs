@@ -1,13 +1,16 @@
 //! Options and configurations that cannot be meant: exit code 2, and nothing is made.
 
 use super::{Place, TRAIN};
+use footwork::container::{self, Arrays, Format};
 
 #[test]
 fn mistaken_options_name_what_was_meant() {
     let place = Place::with_data();
     for (words, part) in [
         ("dta", "similar subcommand exists: 'data'"),
-        ("train plan", "similar subcommand exists: 'plane'"),
+        ("train plan", "similar value exists: 'plane'"),
+        ("train", "required arguments"),
+        ("ablate obstacle", "similar value exists: 'obstacles'"),
         ("train plane --evns 4", "similar argument exists: '--envs'"),
         ("train plane --device gpux", "similar value exists: 'gpu'"),
         ("train plane --preset quick", "possible values: fast, paper"),
@@ -24,10 +27,18 @@ fn mistaken_options_name_what_was_meant() {
         ("train plane --max-time 0s", "max_time_s is 0"),
         ("train plane --max-time 5", "time unit needed"),
         ("train plane --max-time -5m", "invalid value '-5m'"),
-        ("train plane --stop-success 0", "stop_success is 0"),
-        ("train plane --stop-success 2", "stop_success is 2"),
-        ("train plane --stop-success nan", "stop_success is NaN"),
-        ("train plane --stop-success -1", "stop_success is -1"),
+        ("train plane --stop-at-success 0", "stop_at_success is 0"),
+        ("train plane --stop-at-success 2", "stop_at_success is 2"),
+        ("train plane --stop-at-success nan", "stop_at_success is NaN"),
+        ("train plane --stop-at-success -1", "stop_at_success is -1"),
+        ("train plane --set ppo.gama=1", "mean `ppo.gamma`?"),
+        ("train plane --set ppo.gamma", "a key, `=` and a value"),
+        ("train plane --set ppo.gamma=high", "must be of the type float"),
+        ("train plane --set ppo.gamma=2", "ppo.gamma is 2"),
+        ("train plane --set task.count=2", "unknown key `task.count`"),
+        ("train plane --set task.name=obstacles", "--set task.name"),
+        ("train plane --set preset=paper", "--set preset"),
+        ("train plane --no-curriculum", "unknown key `task.curriculum`"),
         ("train plane --config gone.toml", "cannot read gone.toml"),
         ("train plane --config .", "cannot read .:"),
         ("train plane --config small.footwork", "cannot read small"),
@@ -55,8 +66,8 @@ fn mistaken_options_name_what_was_meant() {
         ("data synth --out a --minutes nan", "--minutes must be from"),
         ("data synth --out a --minutes 1e9", "--minutes must be from"),
         (
-            "data synth --out a --weights orange",
-            "similar value exists: 'orangeduck'",
+            "data synth --out a --weights hold",
+            "similar value exists: 'holden'",
         ),
     ] {
         place.refused(words, 2, &[part]);
@@ -86,8 +97,8 @@ fn mistaken_configurations_name_key_line_and_nearest() {
         ),
         ("ppo = 3", &["line 1", "`ppo` must be of the type table"]),
         (
-            "[plane]\nreach = \"far\"",
-            &["line 2", "`plane.reach`", "not string"],
+            "[task]\nsuccess_radius = \"far\"",
+            &["line 2", "`task.success_radius`", "not string"],
         ),
         ("steps = \"many\"", &["`steps` must be of the type integer"]),
         ("steps = 1.5", &["`steps` must be of the type integer"]),
@@ -100,50 +111,64 @@ fn mistaken_configurations_name_key_line_and_nearest() {
         ("steps = 5\nsteps = 6", &["line 2", "duplicate key"]),
         ("this is no toml", &["line 1", "expected `=`"]),
         ("max_time_s = -1", &["max_time_s is -1", "between"]),
-        ("stop_success = 3", &["stop_success is 3", "between"]),
+        ("stop_at_success = 3", &["stop_at_success is 3", "between"]),
+        ("task.name = \"obstacles\"", &["line 1", "of the task `obstacles`, not of `plane`"]),
+        ("[plane]\nreach = 1", &["line 1", "unknown key `plane`"]),
         ("evaluate_every = 0", &["evaluate_every is 0"]),
         ("checkpoint_every = 0", &["checkpoint_every is 0"]),
         (
-            "weights.foot_position = nan",
+            "task.weights.foot_position = nan",
             &["weights.foot_position is NaN"],
         ),
         (
-            "weights.trajectory_position = 0",
+            "task.weights.trajectory_position = 0",
             &["weights.trajectory_position is 0"],
         ),
-        ("plane.half_side = inf", &["plane.half_side is inf"]),
+        ("task.target_extent = inf", &["task.target_extent is inf"]),
         (
-            "plane.reach = 6",
-            &["plane.reach is 6", "less than plane.half_side"],
+            "task.success_radius = 6",
+            &["task.success_radius is 6", "less than task.target_extent"],
         ),
-        ("plane.bonus = nan", &["plane.bonus is NaN"]),
+        ("task.success_bonus = nan", &["task.success_bonus is NaN"]),
         (
-            "plane.max_steps = 4294967295",
-            &["plane.max_steps is 4294967295"],
+            "task.max_steps = 4294967295",
+            &["task.max_steps is 4294967295"],
         ),
-        ("ppo.horizon = 1000", &["ppo.horizon is 1000", "max_steps"]),
+        ("ppo.rollout_length = 1000", &["ppo.rollout_length is 1000", "max_steps"]),
         ("ppo.epochs = 0", &["ppo.epochs is 0"]),
         ("ppo.learning_rate = nan", &["ppo.learning_rate is NaN"]),
         ("ppo.learning_rate = -1", &["ppo.learning_rate is -1"]),
-        ("ppo.final_rate = nan", &["ppo.final_rate is NaN"]),
+        ("ppo.final_lr_fraction = nan", &["ppo.final_lr_fraction is NaN"]),
         ("ppo.gamma = 1.5", &["ppo.gamma is 1.5", "between 0 and 1"]),
-        ("ppo.log_std = nan", &["ppo.log_std is NaN"]),
-        ("ppo.max_gradient = -1", &["ppo.max_gradient is -1"]),
+        ("ppo.init_log_std = nan", &["ppo.init_log_std is NaN"]),
+        ("ppo.max_grad_norm = -1", &["ppo.max_grad_norm is -1"]),
         (
             "ppo.network.hidden = [0]",
-            &["a width of ppo.network.hidden is 0"],
+            &["ppo.network.hidden has a layer of width 0"],
         ),
         (
             "ppo.network.hidden = [1000000000000]",
-            &["a width of ppo.network.hidden is"],
+            &["ppo.network.hidden has a layer of width 1000000000000"],
         ),
         (
             "ppo.network.hidden = [1, 1, 1, 1, 1, 1, 1, 1, 1]",
-            &["the length of ppo.network.hidden is 9"],
+            &["ppo.network.hidden has 9 layers"],
         ),
         (
             "ppo.network.hidden = 3",
             &["`ppo.network.hidden` must be of the type array"],
+        ),
+        (
+            "ppo.network.convolutions = [{ filters = 8, size = 3, stride = 1 }]",
+            &["ppo.network.convolutions needs maps"],
+        ),
+        (
+            "ppo.network.encoder_hidden = [8]",
+            &["ppo.network.encoder_hidden needs maps"],
+        ),
+        (
+            "ppo.network.activation = \"sigmoid\"",
+            &["unknown variant `sigmoid`"],
         ),
     ] {
         place.write("run.toml", text);
@@ -173,8 +198,38 @@ fn a_folder_that_is_no_run_is_refused() {
     place.refused(
         "eval small.footwork",
         1,
-        &["does not lie in the checkpoints of a run"],
+        &["is not in the checkpoints of a run"],
     );
+}
+
+#[test]
+fn runs_of_older_versions_are_refused() {
+    let place = Place::with_run();
+    let config = place.read("run/config.toml");
+    place.write("run/config.toml", "preset = \"fast\"\nsteps = 1000\n[plane]\nreach = 0.5\n");
+    let part = "run/config.toml names no task in its table [task]: it was written by footwork 0.1 from before";
+    for words in ["eval run", "train plane --resume run", "play run", "render run --out a.png"] {
+        place.refused(words, 2, &[part]);
+    }
+    // A key of the version that wrote it.
+    let other = config.replacen("version = \"", "version = \"9.", 1);
+    place.write("run/config.toml", other.replacen("gamma", "gamna", 1));
+    place.refused("eval run", 2, &["unknown key `ppo.gamna`", "(footwork 9."]);
+    // No task of this version.
+    place.write("run/config.toml", config.replacen("\"plane\"", "\"plain\"", 1));
+    place.refused("eval run", 2, &["there is no task `plain`, did you mean `plane`?"]);
+    place.write("run/config.toml", &config);
+
+    let format = Format {
+        kind: "checkpt",
+        version: 3,
+    };
+    let path = place.path("run/checkpoints/last.ckpt");
+    container::save(&path, format, &"a header", &Arrays::default()).unwrap();
+    let part = "last.ckpt was written by footwork 0.1 from before checkpoints had sections (format 3)";
+    for words in ["eval run", "train plane --resume run --steps 10240"] {
+        place.refused(words, 1, &[part]);
+    }
 }
 
 #[test]

@@ -21,7 +21,7 @@ fn draws_pictures_animations_and_frames() {
     // The same episode at the same moment is the same picture; at another it is not.
     place.done("render run -o again.png --size 96x64");
     assert!(png(&place, "again.png").2 == first);
-    place.done("render run/checkpoints/last.ckpt -o later.png --at 3 --size 96x64");
+    place.done("render run/checkpoints/last.ckpt -o later.png --start 3 --size 96x64");
     assert!(png(&place, "later.png").2 != first);
 
     place.done("render run -o frames --seconds 0.5 --rate 10 --size 96x64");
@@ -36,7 +36,7 @@ fn draws_pictures_animations_and_frames() {
     assert!(place.path("frames/frame-00001.png").exists());
     assert!(!place.path("frames/frame-00002.png").exists());
 
-    place.done("render run -o walk.gif --seconds 1 --rate 15 --size 96x64 --joined simple");
+    place.done("render run -o walk.gif --seconds 1 --rate 15 --size 96x64 --blend linear");
     let file = std::fs::File::open(place.path("walk.gif")).unwrap();
     let mut options = gif::DecodeOptions::new();
     options.set_color_output(gif::ColorOutput::Indexed);
@@ -74,8 +74,8 @@ fn what_is_there_stays_unless_forced() {
 fn wrong_wishes_are_refused() {
     let place = Place::with_run();
     for (wish, part) in [
-        ("--at -1", "--at"),
-        ("--at NaN", "--at"),
+        ("--start -1", "--start"),
+        ("--start NaN", "--start"),
         ("--seconds 0", "--seconds"),
         ("--rate 7", "--rate"),
         ("--rate 0", "--rate"),
@@ -109,7 +109,7 @@ fn a_run_that_cannot_be_shown_says_why() {
     place.refused(
         "render run -o two.png --data other.footwork",
         1,
-        &["another database"],
+        &["other data"],
     );
     std::fs::remove_file(place.path("run/checkpoints/last.ckpt")).unwrap();
     for program in [
@@ -128,6 +128,6 @@ fn a_checkpoint_of_an_older_format_is_not_taken_for_a_damaged_one() {
     bytes[16..20].copy_from_slice(&1u32.to_le_bytes());
     std::fs::write(&path, bytes).unwrap();
     for program in ["render run -o one.png", "play run", "eval run"] {
-        place.refused(program, 1, &["format version 1", "make it again"]);
+        place.refused(program, 1, &["(format 1)", "use the one that wrote it"]);
     }
 }

@@ -29,8 +29,8 @@ pub const STEP_S: f32 = FRAMES_PER_STEP as f32 / RATE;
 pub const STAT_NAMES: [&str; 6] = [
     "episodes",
     "successes",
-    "collisions",
-    "truncations",
+    "collision",
+    "truncation",
     "steps",
     "returns",
 ];

@@ -1,0 +1,198 @@
+//! What the trainer and the command line know of a task.
+//!
+//! [`TaskEntry`] is a task by name: its presets, the check of its choices, and how its data is loaded;
+//! all of them are in [`super::tasks::REGISTRY`]. A [`Task`] is one with its choices made and its data
+//! loaded.
+
+use super::config::{Config, ConfigError, Preset, TaskPreset};
+use super::evaluation::Evaluation;
+use super::metrics::UpdateMetrics;
+use super::run_dir::RunDir;
+use super::locomotion::Locomotion;
+use crate::env::{EnvBatch, EnvSpec};
+use crate::gpu::Device;
+use crate::nn::{ActorCritic, Policy};
+use anyhow::Result;
+use std::path::Path;
+
+/// A task by name, before its choices are made.
+pub struct TaskEntry {
+    /// On the command line, in the configuration, and of its run folders.
+    pub name: &'static str,
+    /// A line for `--help`.
+    pub about: &'static str,
+    /// The choices to start from.
+    pub preset: fn(Preset) -> TaskPreset,
+    /// Refuses choices of the task that cannot work. Returns the dimensions of the environments.
+    pub spec: fn(&Config) -> Result<EnvSpec, ConfigError>,
+    /// Loads the data.
+    pub load: fn(&Config) -> Result<Loaded>,
+    /// Comparisons of variants that `footwork ablate` knows.
+    pub ablations: &'static [Ablation],
+}
+
+impl TaskEntry {
+    /// A preset.
+    pub fn config(&self, preset: Preset) -> Config {
+        Config::preset(self.name, preset, (self.preset)(preset))
+    }
+
+    /// A preset changed by the keys that a TOML file names.
+    ///
+    /// # Errors
+    /// See [`ConfigError`].
+    pub fn config_from(&self, path: &Path, preset: Preset) -> Result<Config, ConfigError> {
+        Config::from_file(path, self.name, preset, self.preset)
+    }
+
+    /// Refuses what cannot work, before anything is opened or written. Returns the dimensions of the
+    /// environments.
+    ///
+    /// # Errors
+    /// [`ConfigError::Value`], or an error of the task or of the networks.
+    pub fn check(&self, config: &Config) -> Result<EnvSpec, ConfigError> {
+        config.check()?;
+        let spec = (self.spec)(config)?;
+        ActorCritic::new(&config.ppo.network, &spec.observation, spec.action)?;
+        Ok(spec)
+    }
+}
+
+/// A task with its data, and what the user should know of how it was loaded.
+pub struct Loaded {
+    pub task: Box<dyn Task>,
+    pub notes: Vec<String>,
+}
+
+/// A task with its choices made and its data loaded.
+pub trait Task: Send + Sync {
+    /// The choices that hold: the table `[task]`, but for the name.
+    fn settings(&self) -> toml::Table;
+
+    /// The task with the same data under the choices of another configuration.
+    ///
+    /// # Errors
+    /// See [`ConfigError`].
+    fn with_choices(&self, config: &Config) -> Result<Box<dyn Task>, ConfigError>;
+
+    /// Fingerprint of the data: a policy is of no use with other data. 0 if there is none.
+    fn fingerprint(&self) -> u32;
+
+    /// The data in a few words, to be said when a training starts.
+    fn describe(&self) -> String;
+
+    /// Opens the environments of a training.
+    ///
+    /// # Errors
+    /// The device cannot hold them.
+    fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch>;
+
+    /// Runs `episodes` fixed episodes to their end, the same ones for every policy.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation>;
+
+    /// An evaluation in a sentence without its full stop.
+    fn sentence(&self, evaluation: &Evaluation) -> String;
+
+    /// All that `footwork eval` tells of a policy.
+    ///
+    /// # Errors
+    /// [`Unsupported`] if the task has no such thing as is asked for.
+    fn report(&self, policy: &Policy, wanted: &EvalOptions) -> Result<EvalReport>;
+
+    /// Environment steps at which a checkpoint is kept for [`Task::figures`].
+    fn milestones(&self) -> &'static [u64] {
+        &[]
+    }
+
+    /// Draws the figures of a run into its folder.
+    ///
+    /// # Errors
+    /// A checkpoint cannot be read, or a picture not be written.
+    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()>;
+
+    /// What `play`, `render` and `--watch` show, which know motion matching alone.
+    fn locomotion(&self) -> Option<&Locomotion> {
+        None
+    }
+}
+
+/// What `footwork eval` may be asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EvalOptions {
+    pub episodes: usize,
+    /// A scripted controller beside the policy.
+    pub baseline: bool,
+    /// Episodes to plan with full knowledge.
+    pub planner: usize,
+    /// The quality of the whole body's motion.
+    pub motion_quality: bool,
+}
+
+/// A report for people and one for programs.
+pub struct EvalReport {
+    pub text: String,
+    pub json: serde_json::Value,
+}
+
+/// Something was asked of a task that it does not have.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Unsupported(pub String);
+
+/// Variants of a task, to be trained side by side.
+pub struct Ablation {
+    /// On the command line.
+    pub name: &'static str,
+    /// A line for `--help`.
+    pub about: &'static str,
+    /// Folder of its runs unless another is named.
+    pub folder: &'static str,
+    pub variants: &'static [Variant],
+    /// What is compared besides the success.
+    pub measures: &'static [Measure],
+    /// Rates of episodes in `metrics.jsonl` whose curves are kept.
+    pub rates: &'static [&'static str],
+}
+
+/// One way to do it.
+pub struct Variant {
+    /// Of its runs' folders and in tables.
+    pub name: &'static str,
+    /// The choices of the task that are other than the configuration's.
+    pub changes: fn() -> toml::Table,
+}
+
+/// A column of a table of evaluations.
+pub struct Measure {
+    pub title: &'static str,
+    /// In [`Evaluation::measures`].
+    pub name: &'static str,
+    /// Times this.
+    pub unit: f64,
+    pub digits: usize,
+}
+
+impl Measure {
+    /// A fraction, in percent.
+    pub const fn percent(title: &'static str, name: &'static str) -> Self {
+        Measure {
+            title,
+            name,
+            unit: 100.0,
+            digits: 1,
+        }
+    }
+
+    /// A time, s.
+    pub const fn seconds(title: &'static str, name: &'static str) -> Self {
+        Measure {
+            title,
+            name,
+            unit: 1.0,
+            digits: 2,
+        }
+    }
+}

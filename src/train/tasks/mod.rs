@@ -1,0 +1,33 @@
+//! The tasks, a file each, and the one list of them.
+
+pub mod obstacles;
+pub mod plane;
+mod presets;
+
+use super::config::{Config, ConfigError, Preset, nearest};
+use super::run_dir::RunDir;
+use super::task::TaskEntry;
+
+/// Every task there is.
+pub static REGISTRY: [TaskEntry; 2] = [plane::ENTRY, obstacles::ENTRY];
+
+/// A task by name.
+///
+/// # Errors
+/// There is none; the message has the nearest name.
+pub fn find(name: &str) -> Result<&'static TaskEntry, ConfigError> {
+    let found = REGISTRY.iter().find(|entry| entry.name == name);
+    found.ok_or_else(|| ConfigError::Task {
+        name: name.to_string(),
+        hint: nearest(name, REGISTRY.iter().map(|entry| entry.name)),
+    })
+}
+
+/// The configuration of a run.
+///
+/// # Errors
+/// See [`ConfigError`].
+pub fn config_of(run: &RunDir) -> Result<Config, ConfigError> {
+    let path = run.config_path();
+    find(&Config::task_of(&path)?)?.config_from(&path, Preset::default())
+}

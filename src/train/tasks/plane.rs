@@ -1,0 +1,184 @@
+//! The task `plane`: reach a target on an empty plane.
+
+use super::presets::{fast, paper};
+use crate::env::locomotion::{LocomotionTask, Plane};
+use crate::env::{EnvBatch, EnvSpec};
+use crate::gpu::Device;
+use crate::motion::normalise::Weights;
+use crate::nn::Policy;
+use crate::report::learning_curve::{self, Mark};
+use crate::report::trajectories::{Group, Path};
+use crate::report::{chart, trajectories as picture};
+use crate::train::checkpoint::Checkpoint;
+use crate::train::config::{Config, ConfigError, Preset, TaskPreset, within};
+use crate::train::evaluate::hardest;
+use crate::train::evaluation::Evaluation;
+use crate::train::figures::points;
+use crate::train::locomotion::{Locomotion, rollout_spec, split, with_weights};
+use crate::train::metrics::UpdateMetrics;
+use crate::train::run_dir::RunDir;
+use crate::train::task::{
+    EvalOptions, EvalReport, Loaded, Task, TaskEntry, Unsupported,
+};
+use crate::train::trajectories::{EpisodeTrajectory, trajectories};
+use anyhow::Result;
+
+pub const ENTRY: TaskEntry = TaskEntry {
+    name: "plane",
+    about: "Reach a target on an empty plane",
+    preset,
+    spec,
+    load,
+    ablations: &[],
+};
+
+/// Steps at which the paper shows its policies (figure 4).
+const MILESTONES: [u64; 4] = [20_000, 100_000, 533_000, 1_000_000];
+/// Episodes drawn for each policy.
+const DRAWN: usize = 6;
+
+fn preset(preset: Preset) -> TaskPreset {
+    TaskPreset {
+        settings: with_weights(&Plane::default(), Weights::PAPER),
+        ppo: match preset {
+            Preset::Fast => fast(),
+            Preset::Paper => paper(),
+        },
+        steps: 1_000_000,
+    }
+}
+
+fn spec(config: &Config) -> Result<EnvSpec, ConfigError> {
+    let (plane, _) = split::<Plane>(config)?;
+    within("task.target_extent", plane.target_extent, 0.1, 1000.0)?;
+    within("task.success_radius", plane.success_radius, 0.001, 1000.0)?;
+    within("task.success_bonus", plane.success_bonus, -1e6, 1e6)?;
+    within("task.max_steps", plane.max_steps, 1, 10_000)?;
+    if plane.success_radius >= plane.target_extent {
+        return Err(ConfigError::Value {
+            key: "task.success_radius",
+            value: plane.success_radius.to_string(),
+            why: "no target can be drawn: it must be less than task.target_extent".into(),
+        });
+    }
+    rollout_spec(LocomotionTask::Plane(plane), config)
+}
+
+fn load(config: &Config) -> Result<Loaded> {
+    let (plane, weights) = split::<Plane>(config)?;
+    let (locomotion, notes) = Locomotion::load(LocomotionTask::Plane(plane), weights, config)?;
+    let task = Box::new(PlaneTask { plane, locomotion });
+    Ok(Loaded { task, notes })
+}
+
+struct PlaneTask {
+    plane: Plane,
+    locomotion: Locomotion,
+}
+
+impl Task for PlaneTask {
+    fn settings(&self) -> toml::Table {
+        with_weights(&self.plane, self.locomotion.matcher.database.weights)
+    }
+
+    fn with_choices(&self, config: &Config) -> Result<Box<dyn Task>, ConfigError> {
+        let (plane, _) = split::<Plane>(config)?;
+        let locomotion = self.locomotion.with_task(LocomotionTask::Plane(plane));
+        Ok(Box::new(PlaneTask {
+            plane,
+            locomotion,
+        }))
+    }
+
+    fn fingerprint(&self) -> u32 {
+        self.locomotion.matcher.database.fingerprint
+    }
+
+    fn describe(&self) -> String {
+        self.locomotion.describe()
+    }
+
+    fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
+        self.locomotion.open(device, envs, seed)
+    }
+
+    fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {
+        self.locomotion.evaluate(policy, episodes)
+    }
+
+    fn sentence(&self, found: &Evaluation) -> String {
+        format!(
+            "{:.1} % of {} episodes reach the target, in {:.2} s on average",
+            100.0 * found.success,
+            found.episodes,
+            found.measure("time_to_target_mean_s")
+        )
+    }
+
+    fn report(&self, policy: &Policy, wanted: &EvalOptions) -> Result<EvalReport> {
+        if wanted.planner > 0 {
+            let why = "--planner is for runs among obstacles: on the plane nothing is in the way";
+            return Err(Unsupported(why.into()).into());
+        }
+        let Locomotion { task, matcher } = &self.locomotion;
+        let trained = hardest(policy, matcher, *task, wanted.episodes)?;
+        self.locomotion.report(policy, &trained, wanted)
+    }
+
+    fn milestones(&self) -> &'static [u64] {
+        &MILESTONES
+    }
+
+    /// Draws `learning_curve.png` and, once a milestone is reached, `trajectories.png`.
+    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
+        let mut reached = MILESTONES.to_vec();
+        reached.retain(|&steps| run.checkpoint_at(steps).exists());
+        let curve = run.file("learning_curve.png");
+        learning_curve::draw(&curve, &points(rows), &marks(&reached), &[])?;
+        let groups = reached.iter().enumerate();
+        let groups = groups.map(|(colour, &steps)| self.episodes(run, steps, colour));
+        let groups = groups.collect::<Result<Vec<_>>>()?;
+        match groups.is_empty() {
+            true => Ok(()),
+            false => Ok(picture::draw(&run.file("trajectories.png"), &groups)?),
+        }
+    }
+
+    fn locomotion(&self) -> Option<&Locomotion> {
+        Some(&self.locomotion)
+    }
+}
+
+impl PlaneTask {
+    /// Episodes of the policy at a milestone.
+    fn episodes(&self, run: &RunDir, steps: u64, colour: usize) -> Result<Group> {
+        let checkpoint = Checkpoint::load(&run.checkpoint_at(steps))?;
+        let Locomotion { task, matcher } = &self.locomotion;
+        let drawn = trajectories(&checkpoint.policy, matcher, *task, DRAWN)?;
+        let path = |one: EpisodeTrajectory| Path {
+            label: match one.reached {
+                true => format!("{:.1} s", one.seconds()),
+                false => String::new(),
+            },
+            points: one.points,
+            target: one.target,
+            reached: one.reached,
+            colour,
+        };
+        Ok(Group {
+            title: format!("{} steps", chart::steps(checkpoint.header.steps as f64)),
+            paths: drawn.into_iter().map(path).collect(),
+        })
+    }
+}
+
+fn marks(reached: &[u64]) -> Vec<Mark> {
+    let marks = reached.iter().enumerate();
+    marks
+        .map(|(colour, &steps)| Mark {
+            steps,
+            label: chart::steps(steps as f64),
+            colour,
+        })
+        .collect()
+}
