@@ -1,19 +1,15 @@
 //! The policy at work: it acts, and learns from what came of it.
 
 use super::Ppo;
+use super::batch::Batch;
 use super::loss::{LossCoefficients, PpoLoss, SUMS};
-use super::samples::Samples;
 use crate::container::{Section, SectionError};
 use crate::env::{EnvBatch, EnvSpec, Stats, VecEnv};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::rollout_moments::scale;
 use crate::kernels::learn::sample_action;
 use crate::kernels::rng::permutation;
-use crate::nn::actor_critic::ActorCritic;
-use crate::nn::adam::Adam;
-use crate::nn::policy::Policy;
-use crate::nn::running_mean_std::RunningMeanStd;
-use crate::nn::{Engine, EngineSize, Rows, Shuffled};
+use crate::nn::{ActorCritic, Adam, Engine, Policy, RunningMeanStd};
 use crate::rl::gae::{Bootstrap, gae};
 use crate::rl::rollout::Rollout;
 use crate::rl::sample_action::sample_action;
@@ -65,13 +61,14 @@ impl PpoLearner {
         let networks = ActorCritic::new(&config.network, &spec.observation, spec.action)?;
         let parameters = networks.parameters();
         let samples = config.rollout_length * spec.rows();
-        let size = EngineSize {
+        let engine = Engine::new(
+            device,
+            networks.networks(),
             parameters,
-            sums: SUMS,
-            max_rows: samples,
-            minibatch: config.minibatch_size.min(samples),
-        };
-        let engine = Engine::new(device, networks.networks(), size)?;
+            spec.action + SUMS,
+            samples,
+            config.minibatch_size.min(samples),
+        )?;
         let normalizer = || RunningMeanStd::new(device, spec.observation.dim());
         Ok(PpoLearner {
             parameters: Array::from_slice(device, &networks.init(seed, config.init_log_std, &[])),
@@ -147,10 +144,9 @@ impl PpoLearner {
         first: usize,
     ) -> Result<[f64; 2]> {
         let (rows, action) = (rollout.spec.rows(), self.spec.action);
-        let width = self.spec.observation.dim();
         let begin = Instant::now();
         let mut policy_fraction = 0.0;
-        let mut seen = Array::zeroed(&self.device, rows * width);
+        let mut seen = Array::zeroed(&self.device, rows * self.spec.observation.dim());
         for step in 0..rollout.steps {
             // A GPU only queues what is requested; the first step of a rollout waits for it, to see
             // how the time of all divides.
@@ -163,28 +159,26 @@ impl PpoLearner {
             let start = clock()?;
             rollout.observe(env, step);
             let observed = clock()?;
-            let row = step * rows;
-            let (values, first) = match &self.observation_normalizer {
-                None => (&rollout.observation, row),
+            let (parameters, row) = (&self.parameters, step * rows);
+            let mean = &mut rollout.mean;
+            match &self.observation_normalizer {
+                None => self.engine.forward(
+                    ACTOR,
+                    parameters,
+                    &rollout.observation,
+                    row,
+                    rows,
+                    mean,
+                    row * action,
+                ),
                 Some(normalizer) => {
-                    let at = row * width;
+                    let at = row * self.spec.observation.dim();
                     normalizer.normalize(&rollout.observation, at, &mut seen, 0, rows);
-                    (&seen, 0)
+                    let to = row * action;
+                    self.engine
+                        .forward(ACTOR, parameters, &seen, 0, rows, mean, to);
                 }
-            };
-            let input = Rows {
-                values,
-                width,
-                first,
-                count: rows,
-            };
-            self.engine.forward(
-                ACTOR,
-                &self.parameters,
-                input,
-                &mut rollout.mean,
-                row * action,
-            );
+            }
             let params = sample_action::Params {
                 rows: rows as u32,
                 action: action as u32,
@@ -218,15 +212,10 @@ impl PpoLearner {
             normalizer.normalize_in_place(&mut rollout.next_observation, rows);
             normalizer.normalize_in_place(&mut rollout.final_observation, final_rows);
         }
-        let value = |values: &Array, count: usize, out: &mut Array, at: usize| {
-            let input = Rows {
-                values,
-                width: rollout.spec.observation.dim(),
-                first: 0,
-                count,
-            };
+        let value = |observation: &Array, count: usize, out: &mut Array, at: usize| {
+            let parameters = &self.parameters;
             self.engine
-                .forward(CRITIC, &self.parameters, input, out, at);
+                .forward(CRITIC, parameters, observation, 0, count, out, at);
         };
         let zeros = |len: usize| Array::zeroed(&self.device, len);
         let mut bootstrap = Bootstrap {
@@ -255,37 +244,47 @@ impl PpoLearner {
     /// Takes gradient steps on the rollouts. The sums of the last epoch stay on the device.
     fn learn(&mut self, log_std: &Array) {
         self.value_normalizer.update(&self.rollouts);
-        let scale = self.value_normalizer.scale();
-        let samples = Samples::pack(&self.device, &self.rollouts, scale);
+        let rollouts = std::mem::take(&mut self.rollouts);
+        let device = self.device.clone();
+        let mut batch = Batch::new(&device, &rollouts, self.value_normalizer.scale().clone());
+        let samples = batch.samples();
         for epoch in 0..self.config.epochs {
             let stream = SHUFFLE + epoch as u32;
-            let order = permutation(self.seed, self.updates as u32, stream, samples.count);
-            let shuffled = Shuffled::new(&self.device, &samples.rows, samples.width, &order);
-            for start in (0..samples.count).step_by(self.config.minibatch_size) {
-                let end = samples.count.min(start + self.config.minibatch_size);
-                self.step(&shuffled, start..end, log_std);
+            batch.begin_epoch(permutation(
+                self.seed,
+                self.updates as u32,
+                stream,
+                samples,
+            ));
+            self.sums = Array::zeroed(&device, SUMS);
+            for start in (0..samples).step_by(self.config.minibatch_size) {
+                let end = samples.min(start + self.config.minibatch_size);
+                self.step(&batch, start..end, log_std);
             }
         }
         self.updates += 1;
+        self.rollouts = rollouts;
     }
 
-    /// One gradient step on a minibatch. The first of an epoch begins the sums.
-    fn step(&mut self, samples: &Shuffled, minibatch: Range<usize>, log_std: &Array) {
+    /// One gradient step on a minibatch.
+    fn step(&mut self, batch: &Batch, samples: Range<usize>, log_std: &Array) {
         let objective = PpoLoss {
             action: self.spec.action,
             log_std: self.networks.log_std(),
             old_log_std: log_std,
-            coefficients: LossCoefficients::new(&self.config, self.kl_coefficient),
+            coefficients: LossCoefficients {
+                inv_count: 1.0 / samples.len() as f32,
+                ..LossCoefficients::new(&self.config, self.kl_coefficient)
+            },
         };
-        let begin = minibatch.start == 0;
         self.engine.gradient(
             &self.parameters,
-            samples,
-            minibatch,
+            &batch.rows,
+            batch.width,
+            batch.minibatch(samples),
             &objective,
             &mut self.gradient,
             &mut self.sums,
-            begin,
         );
         self.adam.step(
             &mut self.parameters,
@@ -330,7 +329,7 @@ impl PpoLearner {
     fn losses(&mut self) -> Result<Vec<(&'static str, f64)>> {
         let samples: usize = self.rollouts.iter().map(Rollout::samples).sum();
         let sums = self.sums.read(&self.device)?;
-        let grad_norm = self.adam.grad_norm(&self.device)?;
+        let grad_norm = self.adam.grad_norm()?;
         let scale = self.value_normalizer.advance()?;
         let mean = |i: usize| f64::from(sums[i]) / samples as f64;
         let losses = vec![
@@ -390,21 +389,17 @@ impl Algorithm for PpoLearner {
 
     fn policy(&self) -> Result<Policy> {
         let normalizer = self.observation_normalizer.as_ref();
-        Ok(Policy {
-            config: self.config.network.clone(),
-            observation: self.spec.observation,
-            action: self.spec.action,
-            parameters: self.parameters.read(&self.device)?,
-            normalizer: normalizer
-                .map(|running| running.on_host(&self.device))
-                .transpose()?,
-        })
+        let spec = &self.spec;
+        let mut policy = Policy::new(&self.config.network, &spec.observation, spec.action)?;
+        policy.parameters = self.parameters.read(&self.device)?;
+        policy.normalizer = normalizer.map(RunningMeanStd::on_host).transpose()?;
+        Ok(policy)
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {
         to.put("updates", self.updates);
         to.put_array("rates", &[self.learning_rate, self.kl_coefficient]);
-        self.adam.save(&self.device, to)?;
+        self.adam.save(to)?;
         self.value_normalizer.save(to)
     }
 
@@ -415,7 +410,7 @@ impl Algorithm for PpoLearner {
             return Err(SectionError("its rates are not finite".to_string()));
         }
         (self.learning_rate, self.kl_coefficient) = (rates[0], rates[1]);
-        self.adam.load(&self.device, from)?;
+        self.adam.load(from)?;
         self.value_normalizer.load(from)?;
         self.parameters = Array::from_slice(&self.device, &policy.parameters);
         let normalizer = policy.normalizer.as_ref();

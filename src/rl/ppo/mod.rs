@@ -3,9 +3,9 @@
 //! [`Ppo`] holds what may be chosen, [`loss`] is the objective of a sample, [`learner`] lets the
 //! policy act and improves it.
 
+mod batch;
 pub mod learner;
 pub mod loss;
-mod samples;
 
 use crate::nn::network::NetworkConfig;
 pub use learner::PpoLearner;

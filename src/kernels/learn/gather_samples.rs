@@ -1,11 +1,11 @@
-//! Samples of a rollout, one a row, as the objective reads them. Shader:
-//! `shaders/learn/pack_samples.wgsl`.
+//! Samples of a rollout in the order of an epoch, one a row, as the objective reads them. Shader:
+//! `shaders/learn/gather_samples.wgsl`.
 
 use super::rollout_moments::scale;
 use crate::gpu::{Buffer, Gpu, shader};
 
 crate::shader_params! {
-    pub struct Params for pack_samples {
+    pub struct Params for gather_samples {
         pub samples: u32,
         /// Numbers of an observation, and of an action.
         pub observation: u32,
@@ -26,6 +26,7 @@ pub fn width(observation: usize, action: usize) -> usize {
 
 pub fn launch(
     gpu: &Gpu,
+    order: &Buffer<u32>,
     observation: &Buffer<f32>,
     action: &Buffer<f32>,
     mean: &Buffer<f32>,
@@ -37,9 +38,10 @@ pub fn launch(
 ) {
     let groups = [params.samples.min(GROUPS), params.samples.div_ceil(GROUPS), 1];
     gpu.launch(
-        &shader::PACK_SAMPLES,
+        &shader::GATHER_SAMPLES,
         groups,
         &[
+            order,
             observation,
             action,
             mean,
@@ -56,6 +58,7 @@ pub fn launch(
 const GROUPS: u32 = 65_535;
 
 pub fn twin(
+    order: &[u32],
     observation: &[f32],
     action: &[f32],
     mean: &[f32],
@@ -71,7 +74,8 @@ pub fn twin(
     let (advantage, target) = advantage_and_return.split_at(count);
     let [old_mean, old_std, new_mean, new_std] = std::array::from_fn(|i| scale[i]);
     let rows = samples.chunks_exact_mut(width(seen, acted));
-    for (from, row) in rows.take(count).enumerate() {
+    for (row, &from) in rows.zip(order) {
+        let from = from as usize;
         let (row_observation, row) = row.split_at_mut(seen);
         let (row_action, row) = row.split_at_mut(acted);
         let (row_mean, row_scalars) = row.split_at_mut(acted);

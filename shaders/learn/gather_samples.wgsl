@@ -1,5 +1,6 @@
-// Samples of a rollout, one a row. One workgroup a sample.
+// Samples of a rollout in the order of an epoch, one a row. One workgroup a sample.
 //
+// order                 [samples]
 // observation           [samples][observation]
 // action                [samples][action]
 // mean                  [samples][action]
@@ -16,21 +17,22 @@ struct Params {
     action: u32,
 }
 
-@group(0) @binding(0) var<storage, read> observation: array<f32>;
-@group(0) @binding(1) var<storage, read> action: array<f32>;
-@group(0) @binding(2) var<storage, read> mean: array<f32>;
-@group(0) @binding(3) var<storage, read> log_prob_and_value: array<f32>;
-@group(0) @binding(4) var<storage, read> advantage_and_return: array<f32>;
-@group(0) @binding(5) var<storage, read> scale: array<f32>;
-@group(0) @binding(6) var<storage, read_write> rows: array<f32>;
-@group(0) @binding(7) var<uniform> params: Params;
+@group(0) @binding(0) var<storage, read> order: array<u32>;
+@group(0) @binding(1) var<storage, read> observation: array<f32>;
+@group(0) @binding(2) var<storage, read> action: array<f32>;
+@group(0) @binding(3) var<storage, read> mean: array<f32>;
+@group(0) @binding(4) var<storage, read> log_prob_and_value: array<f32>;
+@group(0) @binding(5) var<storage, read> advantage_and_return: array<f32>;
+@group(0) @binding(6) var<storage, read> scale: array<f32>;
+@group(0) @binding(7) var<storage, read_write> rows: array<f32>;
+@group(0) @binding(8) var<uniform> params: Params;
 
 const LANES = 32u;
 const SCALARS = 4u;
 const MIN_STD = 1e-6;
 
 @compute @workgroup_size(32)
-fn pack_samples(
+fn gather_samples(
     @builtin(workgroup_id) group: vec3u,
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_index) lane: u32,
@@ -41,16 +43,17 @@ fn pack_samples(
     let seen = params.observation;
     let acted = params.action;
     let start = sample * (seen + 2u * acted + SCALARS);
-    for (var i = lane; i < seen; i += LANES) { rows[start + i] = observation[sample * seen + i]; }
+    let origin = order[sample];
+    for (var i = lane; i < seen; i += LANES) { rows[start + i] = observation[origin * seen + i]; }
     for (var i = lane; i < acted; i += LANES) {
-        rows[start + seen + i] = action[sample * acted + i];
-        rows[start + seen + acted + i] = mean[sample * acted + i];
+        rows[start + seen + i] = action[origin * acted + i];
+        rows[start + seen + acted + i] = mean[origin * acted + i];
     }
     if (lane > 0u) { return; }
     let scalars = start + seen + 2u * acted;
-    let value = log_prob_and_value[n + sample] * scale[1] + scale[0];
-    rows[scalars] = log_prob_and_value[sample];
-    rows[scalars + 1u] = (advantage_and_return[sample] - scale[4]) / (scale[5] + MIN_STD);
-    rows[scalars + 2u] = (advantage_and_return[n + sample] - scale[2]) / scale[3];
+    let value = log_prob_and_value[n + origin] * scale[1] + scale[0];
+    rows[scalars] = log_prob_and_value[origin];
+    rows[scalars + 1u] = (advantage_and_return[origin] - scale[4]) / (scale[5] + MIN_STD);
+    rows[scalars + 2u] = (advantage_and_return[n + origin] - scale[2]) / scale[3];
     rows[scalars + 3u] = (value - scale[2]) / scale[3];
 }

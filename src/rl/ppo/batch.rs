@@ -1,0 +1,110 @@
+//! Samples of rollouts, one a row, as the objective reads them.
+
+use crate::gpu::{Array, Buffer, Device};
+use crate::kernels::learn::gather_samples::{Params, launch, twin, width};
+use crate::nn::Rows;
+use crate::rl::rollout::Rollout;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// The samples of an update. On the CPU they stay in the rollouts' order, and a minibatch is a list
+/// of rows; on a GPU they are gathered in the order of every epoch, and a minibatch is a range.
+pub struct Batch<'a> {
+    device: &'a Device,
+    rollouts: &'a [Rollout],
+    /// See [`crate::kernels::learn::rollout_moments::scale`].
+    scale: Array,
+    /// `[samples][width]`
+    pub rows: Array,
+    /// Numbers of a row.
+    pub width: usize,
+    /// Samples in the order of the present epoch.
+    order: Vec<u32>,
+}
+
+impl<'a> Batch<'a> {
+    /// All samples of `rollouts`, normalised by `scale`.
+    pub fn new(device: &'a Device, rollouts: &'a [Rollout], scale: Array) -> Self {
+        let spec = &rollouts[0].spec;
+        let samples: usize = rollouts.iter().map(Rollout::samples).sum();
+        let width = width(spec.observation.dim(), spec.action);
+        let mut batch = Batch {
+            device,
+            rollouts,
+            scale,
+            rows: Array::zeroed(device, samples * width),
+            width,
+            order: Vec::new(),
+        };
+        if let Device::Cpu = device {
+            batch.gather_on_host();
+        }
+        batch
+    }
+
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.rollouts.iter().map(Rollout::samples).sum()
+    }
+
+    /// Begins an epoch that goes through the samples in this order.
+    pub fn begin_epoch(&mut self, order: Vec<u32>) {
+        if let Device::Gpu(gpu) = self.device {
+            let rollout = &self.rollouts[0];
+            launch(
+                gpu,
+                &Buffer::from_slice(gpu, &order),
+                rollout.observation.buffer(),
+                rollout.action.buffer(),
+                rollout.mean.buffer(),
+                rollout.log_prob_and_value.buffer(),
+                rollout.advantage_and_return.buffer(),
+                self.scale.buffer(),
+                self.rows.buffer(),
+                &params(rollout),
+            );
+        }
+        self.order = order;
+    }
+
+    /// The rows of a minibatch of the epoch.
+    pub fn minibatch(&self, samples: Range<usize>) -> Rows<'_> {
+        match self.device {
+            Device::Cpu => Rows::Indices(&self.order[samples]),
+            Device::Gpu(_) => Rows::Range(samples),
+        }
+    }
+
+    fn gather_on_host(&mut self) {
+        let width = self.width;
+        let (mut rest, mut parts) = (self.rows.host_mut(), Vec::new());
+        for rollout in self.rollouts {
+            let (part, after) = rest.split_at_mut(rollout.samples() * width);
+            parts.push((rollout, part));
+            rest = after;
+        }
+        let scale = self.scale.host();
+        parts.into_par_iter().for_each(|(rollout, rows)| {
+            let order: Vec<u32> = (0..rollout.samples() as u32).collect();
+            twin(
+                &order,
+                rollout.observation.host(),
+                rollout.action.host(),
+                rollout.mean.host(),
+                rollout.log_prob_and_value.host(),
+                rollout.advantage_and_return.host(),
+                scale,
+                rows,
+                &params(rollout),
+            );
+        });
+    }
+}
+
+fn params(rollout: &Rollout) -> Params {
+    Params {
+        samples: rollout.samples() as u32,
+        observation: rollout.spec.observation.dim() as u32,
+        action: rollout.spec.action as u32,
+    }
+}
