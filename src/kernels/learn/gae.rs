@@ -1,8 +1,7 @@
 //! Generalised advantage estimation (Schulman et al. 2016, equation 16). Shader:
 //! `shaders/learn/gae.wgsl`.
 
-use crate::gpu::kernel::groups;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::kernels::termination;
 
 crate::shader_params! {

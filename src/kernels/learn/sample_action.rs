@@ -1,7 +1,6 @@
 //! Actions drawn from the policy's Gaussian. Shader: `shaders/learn/sample_action.wgsl`.
 
-use crate::gpu::kernel::groups;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::kernels::rng::{gaussian, random4};
 
 crate::shader_params! {
