@@ -1,4 +1,4 @@
-// Gradients with respect to the sums of all layers, origin those of the outputs, origin the last layer to the
+// Gradients with respect to the sums of all layers, from those of the outputs, from the last layer to the
 // first. One workgroup a network and BLOCK rows; the first network's also sorts the extras in.
 //
 // batch         see network
@@ -47,15 +47,15 @@ fn backward(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index
     let last = batch.first_layer[group.z + 1u] - 1u;
     let outputs = batch.layer[last].outputs;
     for (var output = local; output < outputs; output += LANES) {
-        let origin = params.rows * batch.outputs_before[group.z] + output;
+        let source = params.rows * batch.outputs_before[group.z] + output;
         let at = (block + batch.layer[last].output_col + output) * HALVES;
         grads[at] = vec4f(
-            output_grad(row, origin, outputs), output_grad(row + 1u, origin, outputs),
-            output_grad(row + 2u, origin, outputs), output_grad(row + 3u, origin, outputs),
+            output_grad(row, source, outputs), output_grad(row + 1u, source, outputs),
+            output_grad(row + 2u, source, outputs), output_grad(row + 3u, source, outputs),
         );
         grads[at + 1u] = vec4f(
-            output_grad(row + 4u, origin, outputs), output_grad(row + 5u, origin, outputs),
-            output_grad(row + 6u, origin, outputs), output_grad(row + 7u, origin, outputs),
+            output_grad(row + 4u, source, outputs), output_grad(row + 5u, source, outputs),
+            output_grad(row + 6u, source, outputs), output_grad(row + 7u, source, outputs),
         );
     }
     let added = batch.layer[batch.layers - 1u];

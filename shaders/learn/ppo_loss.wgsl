@@ -1,7 +1,8 @@
 // PPO's loss of every row (Schulman et al. 2017, equations 7 to 9): its gradient with respect to the
 // outputs of actor and critic and to log_std, and what is logged of it. One invocation a row.
 //
-// dims          [3]                  numbers of an observation, of an action; where log_std begins
+// dims          [4]                  numbers of an observation; where log_std begins; numbers of an action;
+//                                    1
 // samples       [..][width]          observation, action, old mean, old log probability, advantage,
 //                                    target, old value
 // parameters    [parameters]
@@ -42,7 +43,7 @@ const HALF_LOG_TAU = 0.9189385;
 fn ppo_loss(@builtin(global_invocation_id) id: vec3u) {
     let row = id.x;
     if (row >= params.rows) { return; }
-    let actions = dims[1];
+    let actions = dims[2];
     let mean = row * actions;
     let action = (params.start + row) * params.width + dims[0];
     let old_mean = action + actions;
@@ -54,7 +55,7 @@ fn ppo_loss(@builtin(global_invocation_id) id: vec3u) {
     var kl = 0.0;
     var entropy = 0.0;
     for (var i = 0u; i < actions; i++) {
-        let log_std = parameters[dims[2] + i];
+        let log_std = parameters[dims[1] + i];
         let inv_std = exp(-log_std);
         let noise = (samples[action + i] - outputs[mean + i]) * inv_std;
         let mean_diff = (samples[old_mean + i] - outputs[mean + i]) * inv_std;
@@ -70,7 +71,7 @@ fn ppo_loss(@builtin(global_invocation_id) id: vec3u) {
     let unclipped = ratio * advantage <= clipped * advantage;
     let d_log_prob = select(0.0, -advantage * ratio, unclipped);
     for (var i = 0u; i < actions; i++) {
-        let log_std = parameters[dims[2] + i];
+        let log_std = parameters[dims[1] + i];
         let inv_std = exp(-log_std);
         let noise = (samples[action + i] - outputs[mean + i]) * inv_std;
         let mean_diff = (samples[old_mean + i] - outputs[mean + i]) * inv_std;

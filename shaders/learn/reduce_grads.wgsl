@@ -3,20 +3,14 @@
 // batch     see network
 // partials  [splits][parameters + sums]
 // gradient  [parameters]
-// sums      [sums]                      added to, or begun
+// sums      [sums]                      added to
 
 #import network
-
-struct Params {
-    // 1: the sums begin.
-    begin: u32,
-}
 
 @group(0) @binding(0) var<storage, read> batch: BatchLayout;
 @group(0) @binding(1) var<storage, read> partials: array<f32>;
 @group(0) @binding(2) var<storage, read_write> gradient: array<f32>;
 @group(0) @binding(3) var<storage, read_write> sums: array<f32>;
-@group(0) @binding(4) var<uniform> params: Params;
 
 @compute @workgroup_size(64)
 fn reduce_grads(@builtin(global_invocation_id) id: vec3u) {
@@ -29,7 +23,6 @@ fn reduce_grads(@builtin(global_invocation_id) id: vec3u) {
     if (id.x < batch.parameters) {
         gradient[id.x] = sum;
     } else {
-        let which = id.x - batch.parameters;
-        sums[which] = sum + select(sums[which], 0.0, params.begin == 1u);
+        sums[id.x - batch.parameters] += sum;
     }
 }

@@ -64,6 +64,15 @@ impl Adam {
         }
     }
 
+    /// The norm of the last step's gradient, before it was shortened.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn grad_norm(&self) -> Result<f32> {
+        let parts = self.norm_partials.read(&self.device)?;
+        Ok(parts.iter().sum::<f32>().sqrt())
+    }
+
     /// Saves moments and steps.
     ///
     /// # Errors

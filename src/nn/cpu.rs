@@ -11,13 +11,12 @@ mod matmul;
 mod microkernel;
 mod tanh;
 
-use super::engine::{EngineSize, Rows, SamplesInOrder, Shuffled};
-use super::network::Network;
+use super::engine::{EngineSize, Rows};
+use super::network::{LayerParams, Network};
 use super::objective::{HostBatch, Objective};
 use crate::gpu::Array;
 use layers::is_wide;
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// Rows taken through a narrow network together, and through one with wide layers.
 const CHUNK_ROWS: usize = 32;
@@ -42,40 +41,42 @@ impl CpuEngine {
         &self,
         network: usize,
         parameters: &Array,
-        rows: Rows,
+        observations: &Array,
+        first: usize,
+        rows: usize,
         out: &mut Array,
         out_at: usize,
     ) {
         let network = &self.networks[network];
-        let values = &rows.values.host()[rows.first * rows.width..][..rows.count * rows.width];
-        let out = &mut out.host_mut()[out_at..][..rows.count * network.outputs()];
-        forward(network, parameters.host(), values, rows.width, out);
+        let width = network.observation().dim();
+        let observations = &observations.host()[first * width..][..rows * width];
+        let out = &mut out.host_mut()[out_at..][..rows * network.outputs()];
+        forward(network, parameters.host(), observations, out);
     }
 
     pub fn gradient(
         &self,
         parameters: &Array,
-        samples: &Shuffled,
-        minibatch: Range<usize>,
+        samples: &Array,
+        width: usize,
+        rows: Rows,
         objective: &dyn Objective,
         gradient: &mut Array,
         sums: &mut Array,
-        begin: bool,
     ) {
-        let SamplesInOrder::Host(values, order) = samples.samples else {
-            unreachable!("samples of the CPU were expected")
+        let row = |at: usize| &samples.host()[at * width..][..width];
+        let rows: Vec<&[f32]> = match rows {
+            Rows::Range(rows) => rows.map(row).collect(),
+            Rows::Indices(rows) => rows.iter().map(|&at| row(at as usize)).collect(),
         };
-        let width = samples.width;
-        let row = |&i: &u32| &values[i as usize * width..][..width];
-        let rows: Vec<&[f32]> = order[minibatch].iter().map(row).collect();
         let (gradient, sums) = (gradient.host_mut(), sums.host_mut());
-        let behind = self.networks.last().map_or(0, |last| last.span().end);
         let batch = Minibatch {
             rows: &rows,
             flat: parameters.host(),
             objective,
-            extras: self.size.parameters - behind + self.size.sums,
+            extras: self.size.extras,
         };
+        let behind = self.size.parameters - self.size.others(&self.networks);
         let (mut rest, others) = gradient.split_at_mut(behind);
         let mut parts = Vec::new();
         for network in &self.networks {
@@ -86,9 +87,6 @@ impl CpuEngine {
         let extras: Vec<Vec<f32>> = networks
             .map(|(number, (network, gradient))| batch.gradient(number, network, gradient))
             .collect();
-        if begin {
-            sums.fill(0.0);
-        }
         others.fill(0.0);
         for extras in extras {
             let (of_others, of_sums) = extras.split_at(others.len());
@@ -98,13 +96,14 @@ impl CpuEngine {
     }
 }
 
-/// Writes the outputs `[n][outputs]` of rows `[n][width]` that begin with observations, on all cores.
-pub fn forward(network: &Network, flat: &[f32], values: &[f32], width: usize, out: &mut [f32]) {
+/// Writes the outputs `[n][outputs]` for observations `[n][observation]`, on all cores.
+pub fn forward(network: &Network, flat: &[f32], observations: &[f32], out: &mut [f32]) {
     let (rows, outputs) = (chunk_rows(network), network.outputs());
-    let chunks = values.par_chunks(rows * width);
+    let width = network.observation().dim();
+    let chunks = observations.par_chunks(rows * width);
     let chunks = chunks.zip(out.par_chunks_mut(rows * outputs));
-    chunks.for_each(|(values, out)| {
-        let rows: Vec<&[f32]> = values.chunks_exact(width).collect();
+    chunks.for_each(|(observations, out)| {
+        let rows: Vec<&[f32]> = observations.chunks_exact(width).collect();
         let (_, outputs) = Pass::new(network, flat, &rows);
         out.copy_from_slice(&outputs);
     });
@@ -169,7 +168,7 @@ impl Minibatch<'_> {
         chunk: usize,
         rows: &[&[f32]],
     ) -> Split {
-        let narrow = network.layers().iter().map(|params| narrow_len(params));
+        let narrow = network.layers().iter().map(narrow_len);
         let mut split = Split {
             narrow: vec![0.0; narrow.sum()],
             extras: vec![0.0; self.extras],
@@ -181,7 +180,6 @@ impl Minibatch<'_> {
                 network: number,
                 rows,
                 parameters: self.flat,
-                inv_count: 1.0 / self.rows.len() as f32,
             };
             self.objective.loss_gradient(&batch, &mut outputs, &mut split.extras);
             let wide = pass.back(network, self.flat, transposed, outputs, &mut split.narrow);
@@ -194,7 +192,7 @@ impl Minibatch<'_> {
 }
 
 /// Parameters of a layer whose gradient every split sums by itself.
-fn narrow_len(params: &super::network::LayerParams) -> usize {
+fn narrow_len(params: &LayerParams) -> usize {
     match is_wide(&params.layer) {
         true => 0,
         false => params.span().len(),

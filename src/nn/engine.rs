@@ -1,7 +1,8 @@
 //! Evaluates and differentiates networks on a device.
 
 use super::cpu::CpuEngine;
-use super::gpu::{GpuEngine, reordered};
+#[cfg(feature = "gpu")]
+use super::gpu::GpuEngine;
 use super::network::Network;
 use super::objective::Objective;
 use crate::gpu::{Array, Device};
@@ -18,103 +19,117 @@ pub struct Engine {
 
 enum Backend {
     Cpu(CpuEngine),
+    #[cfg(feature = "gpu")]
     Gpu(Box<GpuEngine>),
 }
 
-/// The extent of a learning problem.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct EngineSize {
-    /// Length of the flat vector.
-    pub parameters: usize,
-    /// Sums of the objective.
-    pub sums: usize,
-    /// The most rows that are evaluated at once.
-    pub max_rows: usize,
-    /// The most rows of a minibatch.
-    pub minibatch: usize,
-}
-
-/// Rows `[..][width]` that begin with an observation: `count` of them from `first` on.
-#[derive(Clone, Copy)]
-pub struct Rows<'a> {
-    pub values: &'a Array,
-    pub width: usize,
-    pub first: usize,
-    pub count: usize,
-}
-
-/// Samples `[..][width]`, observations first, in an order of their own.
-pub struct Shuffled<'a> {
-    pub(super) samples: SamplesInOrder<'a>,
-    pub(super) width: usize,
-}
-
-pub(super) enum SamplesInOrder<'a> {
-    /// Read where they lie.
-    Host(&'a [f32], &'a [u32]),
-    /// Copied into the order.
-    Gpu(Array),
-}
-
-impl<'a> Shuffled<'a> {
-    /// The samples of the indices `order`.
-    pub fn new(device: &Device, samples: &'a Array, width: usize, order: &'a [u32]) -> Self {
-        let samples = match device {
-            Device::Cpu => SamplesInOrder::Host(samples.host(), order),
-            Device::Gpu(gpu) => SamplesInOrder::Gpu(reordered(gpu, samples.buffer(), width, order)),
-        };
-        Shuffled { samples, width }
-    }
+/// Which of the samples make up a minibatch.
+#[derive(Clone, Debug)]
+pub enum Rows<'a> {
+    /// Those of a range.
+    Range(Range<usize>),
+    /// Those of a list; on the CPU only.
+    Indices(&'a [u32]),
 }
 
 impl Engine {
-    /// What `networks` need on `device`, made once. They must lie in the flat vector one after another,
-    /// from its beginning.
+    /// What `networks` need on `device`, made once. They must lie one after another at the beginning of
+    /// a flat vector of so many `parameters`. The objective adds up so many `extras`, at most `max_rows`
+    /// rows are evaluated at once, and at most `minibatch` learned from.
     ///
     /// # Errors
     /// The device has no room for that.
-    pub fn new(device: &Device, networks: Vec<Network>, size: EngineSize) -> Result<Self> {
+    pub fn new(
+        device: &Device,
+        networks: Vec<Network>,
+        parameters: usize,
+        extras: usize,
+        max_rows: usize,
+        minibatch: usize,
+    ) -> Result<Self> {
+        let size = EngineSize {
+            parameters,
+            extras,
+            max_rows,
+            minibatch,
+        };
         let backend = match device {
             Device::Cpu => Backend::Cpu(CpuEngine::new(networks, size)),
+            #[cfg(feature = "gpu")]
             Device::Gpu(gpu) => Backend::Gpu(Box::new(GpuEngine::new(gpu, networks, size)?)),
+            #[cfg(not(feature = "gpu"))]
+            Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
         };
         Ok(Engine { backend })
     }
 
-    /// Writes the outputs `[rows.count][outputs]` of a network to `out` from the index `out_at` on.
+    /// Writes the outputs `[rows][outputs]` of a network to `out` from the index `out_at` on, for so many
+    /// of the `observations`, `[..][observation]`, from the row `first` on.
     pub fn forward(
         &self,
         network: usize,
         parameters: &Array,
-        rows: Rows,
+        observations: &Array,
+        first: usize,
+        rows: usize,
         out: &mut Array,
         out_at: usize,
     ) {
         match &self.backend {
-            Backend::Cpu(engine) => engine.forward(network, parameters, rows, out, out_at),
-            Backend::Gpu(engine) => engine.forward(network, parameters, rows, out, out_at),
+            Backend::Cpu(engine) => {
+                engine.forward(network, parameters, observations, first, rows, out, out_at);
+            }
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(engine) => {
+                engine.forward(network, parameters, observations, first, rows, out, out_at);
+            }
         }
     }
 
-    /// Writes the gradient of the mean loss over the rows `minibatch` of `samples` with respect to the flat
-    /// vector, and adds the objective's sums over these rows to `sums`, which they `begin` or go on with.
+    /// Writes the gradient of the loss with respect to the flat vector, over some rows of `samples`,
+    /// `[..][width]`, which begin with observations; and adds the objective's sums over these rows to
+    /// `sums`.
     pub fn gradient(
         &mut self,
         parameters: &Array,
-        samples: &Shuffled,
-        minibatch: Range<usize>,
+        samples: &Array,
+        width: usize,
+        rows: Rows,
         objective: &dyn Objective,
         gradient: &mut Array,
         sums: &mut Array,
-        begin: bool,
     ) {
         match &mut self.backend {
-            Backend::Cpu(engine) => engine.gradient(
-                parameters, samples, minibatch, objective, gradient, sums, begin,
-            ),
-            Backend::Gpu(engine) => engine.gradient(
-                parameters, samples, minibatch, objective, gradient, sums, begin,
-            ),
+            Backend::Cpu(engine) => {
+                engine.gradient(parameters, samples, width, rows, objective, gradient, sums);
+            }
+            #[cfg(feature = "gpu")]
+            Backend::Gpu(engine) => {
+                let Rows::Range(rows) = rows else {
+                    unreachable!("a GPU is given samples in their order")
+                };
+                engine.gradient(parameters, samples, width, rows, objective, gradient, sums);
+            }
         }
+    }
+}
+
+/// What [`Engine::new`] is told of what there is to evaluate and to learn.
+#[derive(Clone, Copy, Debug)]
+pub struct EngineSize {
+    /// Length of the flat vector.
+    pub parameters: usize,
+    /// Numbers that the objective adds up.
+    pub extras: usize,
+    /// The most rows evaluated at once.
+    pub max_rows: usize,
+    /// The most rows learned from at once.
+    pub minibatch: usize,
+}
+
+impl EngineSize {
+    /// Parameters behind those of the networks.
+    pub(super) fn others(&self, networks: &[Network]) -> usize {
+        self.parameters - networks.last().map_or(0, |last| last.span().end)
     }
 }

@@ -3,15 +3,14 @@
 
 mod fused;
 mod layerwise;
+pub(super) mod moments;
 pub mod tensors;
 
-use super::engine::{EngineSize, Rows, SamplesInOrder, Shuffled};
+use super::engine::EngineSize;
 use super::network::Network;
 use super::objective::Objective;
-use crate::gpu::tensor::{from_buffer, to_buffer};
-use crate::gpu::{Array, Buffer, Device, Gpu};
+use crate::gpu::{Array, Buffer, Gpu};
 use anyhow::Result;
-use burn::tensor::{Int, Tensor, TensorData};
 use fused::Fused;
 use layerwise::Layerwise;
 use std::ops::Range;
@@ -20,8 +19,6 @@ use std::ops::Range;
 pub struct GpuEngine {
     networks: Vec<Network>,
     kind: Kind,
-    size: EngineSize,
-    gpu: Gpu,
 }
 
 enum Kind {
@@ -37,12 +34,7 @@ impl GpuEngine {
             Some(fused) => Kind::Fused(fused),
             None => Kind::Layerwise(Layerwise::new(gpu, &networks, size)?),
         };
-        Ok(GpuEngine {
-            networks,
-            kind,
-            size,
-            gpu: gpu.clone(),
-        })
+        Ok(GpuEngine { networks, kind })
     }
 
     /// Whatever the networks' widths, in tensors.
@@ -53,8 +45,6 @@ impl GpuEngine {
         Ok(GpuEngine {
             kind: Kind::Layerwise(Layerwise::new(gpu, &networks, size)?),
             networks,
-            size,
-            gpu: gpu.clone(),
         })
     }
 
@@ -62,15 +52,23 @@ impl GpuEngine {
         &self,
         network: usize,
         parameters: &Array,
-        rows: Rows,
+        observations: &Array,
+        first: usize,
+        rows: usize,
         out: &mut Array,
         out_at: usize,
     ) {
+        let batch = Samples {
+            values: observations,
+            width: self.networks[network].observation().dim(),
+            first,
+            count: rows,
+        };
         match &self.kind {
-            Kind::Fused(fused) => fused.forward(network, parameters, rows, out, out_at),
+            Kind::Fused(fused) => fused.forward(network, parameters, batch, out, out_at),
             Kind::Layerwise(layerwise) => {
                 let network = &self.networks[network];
-                layerwise.forward(network, parameters, rows, out, out_at);
+                layerwise.forward(network, parameters, batch, out, out_at);
             }
         }
     }
@@ -78,40 +76,43 @@ impl GpuEngine {
     pub fn gradient(
         &mut self,
         parameters: &Array,
-        samples: &Shuffled,
-        minibatch: Range<usize>,
+        samples: &Array,
+        width: usize,
+        rows: Range<usize>,
         objective: &dyn Objective,
         gradient: &mut Array,
         sums: &mut Array,
-        begin: bool,
     ) {
-        let SamplesInOrder::Gpu(values) = &samples.samples else {
-            unreachable!("samples of a GPU were expected")
-        };
-        let rows = Rows {
-            values,
-            width: samples.width,
-            first: minibatch.start,
-            count: minibatch.len(),
+        let batch = Samples {
+            values: samples,
+            width,
+            first: rows.start,
+            count: rows.len(),
         };
         match &mut self.kind {
-            Kind::Fused(fused) => {
-                fused.gradient(parameters, rows, objective, gradient, sums, begin);
-            }
+            Kind::Fused(fused) => fused.gradient(parameters, batch, objective, gradient, sums),
             Kind::Layerwise(layerwise) => {
                 let networks = &self.networks;
-                layerwise.gradient(networks, parameters, rows, objective, gradient, sums, begin);
+                layerwise.gradient(networks, parameters, batch, objective, gradient, sums);
             }
         }
     }
 }
 
-/// The rows `[..][width]` of the indices `order`.
-pub(super) fn reordered(gpu: &Gpu, rows: &Buffer<f32>, width: usize, order: &[u32]) -> Array {
-    let device = Device::from(gpu.clone()).tensors();
-    let order: Vec<i32> = order.iter().map(|&i| i as i32).collect();
-    let length = order.len();
-    let order = Tensor::<1, Int>::from_data(TensorData::new(order, [length]), &device);
-    let rows: Tensor<2> = from_buffer(gpu, rows, [rows.len() / width, width]);
-    Array::Gpu(to_buffer(rows.select(0, order)))
+/// Samples `[..][width]` that begin with observations: `count` of them from `first` on.
+#[derive(Clone, Copy)]
+struct Samples<'a> {
+    values: &'a Array,
+    width: usize,
+    first: usize,
+    count: usize,
+}
+
+/// See [`GpuBatch::dims`](super::objective::GpuBatch::dims).
+fn dims(gpu: &Gpu, networks: &[Network], size: EngineSize) -> Buffer<u32> {
+    let observation = networks.first().map_or(0, |first| first.observation().dim());
+    let mut dims = vec![observation, size.parameters - size.others(networks)];
+    dims.extend(networks.iter().map(Network::outputs));
+    let dims: Vec<u32> = dims.into_iter().map(|dim| dim as u32).collect();
+    Buffer::from_slice(gpu, &dims)
 }

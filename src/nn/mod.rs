@@ -9,6 +9,7 @@ pub mod actor_critic;
 pub mod adam;
 pub mod cpu;
 pub mod engine;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod layer;
 pub mod network;
@@ -17,5 +18,10 @@ pub mod observation;
 pub mod policy;
 pub mod running_mean_std;
 
-pub use engine::{Engine, EngineSize, Rows, Shuffled};
+pub use actor_critic::ActorCritic;
+pub use adam::Adam;
+pub use engine::{Engine, Rows};
+pub use network::{Network, NetworkConfig, NetworkError};
 pub use objective::Objective;
+pub use policy::Policy;
+pub use running_mean_std::RunningMeanStd;

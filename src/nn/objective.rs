@@ -8,7 +8,7 @@ use crate::gpu::{Buffer, Gpu};
 /// parameters that no network has (as the logarithms of standard deviations), which stand behind those of
 /// the networks, then sums worth logging.
 pub trait Objective: Sync {
-    /// Writes the gradients of the mean loss over the `outputs` of a network, `[rows][outputs]`, and adds
+    /// Writes the gradients of the loss over the `outputs` of a network, `[rows][outputs]`, and adds
     /// to the `extras`.
     fn loss_gradient(&self, batch: &HostBatch, outputs: &mut [f32], extras: &mut [f32]);
 
@@ -24,12 +24,13 @@ pub struct HostBatch<'a> {
     pub rows: &'a [&'a [f32]],
     /// The flat vector.
     pub parameters: &'a [f32],
-    /// 1 / rows of the minibatch.
-    pub inv_count: f32,
 }
 
 /// A minibatch on a GPU.
 pub struct GpuBatch<'a> {
+    /// Numbers of an observation; where the parameters that no network has begin; numbers of an output of
+    /// every network.
+    pub dims: &'a Buffer<u32>,
     /// `[..][width]`, observations first.
     pub samples: &'a Buffer<f32>,
     /// Numbers of a sample.

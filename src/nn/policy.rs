@@ -1,188 +1,121 @@
-//! Policy and critic: two separate networks of the same form with linear ends, and the logarithm
-//! of the actions' standard deviation.
+//! A policy on the host, as evaluation, viewers and checkpoints use it.
 
-use super::gpu::forward::Answering;
-use super::layer::{Bend, Layer, floats};
+use super::actor_critic::ActorCritic;
 use super::cpu;
-use super::network::{Net, Place, Shape};
-use crate::gpu::Buffer;
-use crate::gpu::tensor::to_buffer;
-use crate::kernels::locomotion::locomotion_layout::BASE_OBS_DIM;
-use crate::motion::features::TRAJECTORY_DIM;
-use super::tensors::{upload, values};
-use burn::tensor::module::{conv2d, linear};
-use burn::tensor::ops::ConvOptions;
-use burn::tensor::{Device, Tensor, activation::relu};
-use std::ops::Range;
-use std::sync::Arc;
+use super::network::{NetworkConfig, NetworkError};
+use super::running_mean_std::RunningMeanStd;
+use crate::container::{Section, SectionError};
+use crate::env::ObservationSpec;
+use crate::gpu::Array;
+use anyhow::Result;
 
-impl Shape {
-    /// Cuts the flat vector into its tensors.
-    pub fn cut(&self, flat: &Tensor<1>) -> Policy {
-        let dense = |place: &Place| Dense::cut(place, flat);
-        let networks = match on_cpu(&flat.device()) {
-            true => Networks::Native {
-                shape: self.clone(),
-                flat: values(flat.clone()),
-            },
-            false => Networks::Burn {
-                actor: self.actor.map(dense),
-                critic: self.critic.map(dense),
-            },
-        };
-        Policy {
-            networks,
-            log_std: self.log_std(flat),
-        }
-    }
-
-    /// The same where launches of our own answer.
-    pub(super) fn launched(&self, answering: &Arc<Answering>, flat: &Tensor<1>) -> Policy {
-        Policy {
-            networks: Networks::Launched {
-                answering: answering.clone(),
-                parameters: to_buffer(flat.clone()),
-            },
-            log_std: self.log_std(flat),
-        }
-    }
-
-    fn log_std(&self, flat: &Tensor<1>) -> Tensor<1> {
-        flat.clone().narrow(0, self.log_std, TRAJECTORY_DIM)
-    }
-}
-
-/// Whether the networks run here and not in burn.
-pub(super) fn on_cpu(device: &Device) -> bool {
-    *device == Device::flex()
-}
-
-/// A layer's parameters: weights `[patch][filters]` and biases `[filters]`.
-pub(super) struct Dense {
-    pub layer: Layer,
-    pub weights: Tensor<2>,
-    pub biases: Tensor<1>,
-}
-
+/// An actor and its critic, and what normalises their observations.
+#[derive(Clone)]
 pub struct Policy {
-    networks: Networks,
-    /// `[TRAJECTORY_DIM]`.
-    pub log_std: Tensor<1>,
-}
-
-enum Networks {
-    Burn {
-        actor: Net<Dense>,
-        critic: Net<Dense>,
-    },
-    Native {
-        shape: Shape,
-        flat: Vec<f32>,
-    },
-    Launched {
-        answering: Arc<Answering>,
-        parameters: Buffer<f32>,
-    },
+    config: NetworkConfig,
+    networks: ActorCritic,
+    /// The flat vector that [`ActorCritic`] describes.
+    pub parameters: Vec<f32>,
+    /// In host memory; none if observations are taken as they are.
+    pub normalizer: Option<RunningMeanStd>,
 }
 
 impl Policy {
-    /// Mean action `[n, TRAJECTORY_DIM]` for observations `[n, width]`.
-    pub fn mean(&self, observation: Tensor<2>) -> Tensor<2> {
-        match &self.networks {
-            Networks::Burn { actor, .. } => actor.answer(observation),
-            Networks::Native { shape, flat } => natively(&shape.actor, flat, observation),
-            Networks::Launched {
-                answering,
-                parameters,
-            } => answering.answer(0, TRAJECTORY_DIM, parameters, observation),
-        }
+    /// A policy whose parameters are all zero.
+    ///
+    /// # Errors
+    /// There can be no such networks, or not for such observations.
+    pub fn new(
+        config: &NetworkConfig,
+        observation: &ObservationSpec,
+        action: usize,
+    ) -> Result<Self, NetworkError> {
+        let networks = ActorCritic::new(config, observation, action)?;
+        Ok(Policy {
+            config: config.clone(),
+            parameters: vec![0.0; networks.parameters()],
+            networks,
+            normalizer: None,
+        })
     }
 
-    /// The critic's normalised value `[n]`.
-    pub fn value(&self, observation: Tensor<2>) -> Tensor<1> {
-        let answer = match &self.networks {
-            Networks::Burn { critic, .. } => critic.answer(observation),
-            Networks::Native { shape, flat } => natively(&shape.critic, flat, observation),
-            Networks::Launched {
-                answering,
-                parameters,
-            } => answering.answer(1, 1, parameters, observation),
-        };
-        answer.squeeze_dim::<1>(1)
+    /// The networks' hidden layers.
+    pub fn config(&self) -> &NetworkConfig {
+        &self.config
     }
-}
 
-fn natively(net: &Net<Place>, flat: &[f32], observation: Tensor<2>) -> Tensor<2> {
-    let ([samples, width], device) = (observation.dims(), observation.device());
-    let answers = cpu::answer(net, flat, &values(observation), width);
-    let each = answers.len() / samples;
-    upload(answers, [samples, each], &device)
-}
+    /// The networks, and where their parameters lie.
+    pub fn networks(&self) -> &ActorCritic {
+        &self.networks
+    }
 
-impl Net<Dense> {
-    /// `[n, ..]` for observations `[n, width]`.
-    pub fn answer(&self, observation: Tensor<2>) -> Tensor<2> {
-        let width = observation.dims()[1];
-        let goal = observation.clone().narrow(1, 0, BASE_OBS_DIM);
-        let joined = match self.sees {
-            true => {
-                let maps = observation.narrow(1, BASE_OBS_DIM, width - BASE_OBS_DIM);
-                Tensor::cat(vec![goal, through(&self.sight, maps)], 1)
+    /// What it observes.
+    pub fn observation(&self) -> &ObservationSpec {
+        self.networks.actor.observation()
+    }
+
+    /// Numbers of an action.
+    pub fn action(&self) -> usize {
+        self.networks.actor.outputs()
+    }
+
+    /// Natural logarithms of the standard deviations of the actions.
+    pub fn log_std(&self) -> &[f32] {
+        &self.parameters[self.networks.log_std()]
+    }
+
+    /// Mean actions `[n][action]` for observations `[n][observation]`, on all cores.
+    pub fn mean(&self, observations: &[f32]) -> Vec<f32> {
+        let rows = observations.len() / self.observation().dim();
+        let mut out = vec![0.0; rows * self.action()];
+        let actor = &self.networks.actor;
+        match &self.normalizer {
+            None => cpu::forward(actor, &self.parameters, observations, &mut out),
+            Some(normalizer) => {
+                let mut normalized = Array::Host(observations.to_vec());
+                normalizer.normalize_in_place(&mut normalized, rows);
+                cpu::forward(actor, &self.parameters, normalized.host(), &mut out);
             }
-            false => goal,
-        };
-        through(&self.hidden, joined)
-    }
-}
-
-fn through(layers: &[Dense], input: Tensor<2>) -> Tensor<2> {
-    layers.iter().fold(input, |x, layer| layer.apply(x))
-}
-
-impl Dense {
-    /// Of the flat vector.
-    pub fn cut(place: &Place, flat: &Tensor<1>) -> Dense {
-        let part = |range: Range<usize>| flat.clone().slice([range]);
-        let layer = place.layer;
-        Dense {
-            layer,
-            weights: part(place.weights()).reshape([layer.patch(), layer.filters()]),
-            biases: part(place.biases()),
         }
+        out
     }
 
-    fn apply(&self, input: Tensor<2>) -> Tensor<2> {
-        let (weights, biases) = (self.weights.clone(), Some(self.biases.clone()));
-        let sums = match self.layer.is_dense() {
-            true => linear(input, weights, biases),
-            false => convolve(&self.layer, input, weights, biases),
-        };
-        match self.layer.bend() {
-            Bend::Relu => relu(sums),
-            Bend::Tanh => sums.tanh(),
-            Bend::None => sums,
+    /// Saves everything.
+    ///
+    /// # Errors
+    /// None: the policy is in host memory.
+    pub fn save(&self, to: &mut Section) -> Result<()> {
+        to.put("network", &self.config);
+        to.put("observation", self.observation());
+        to.put("action", self.action());
+        to.put("normalized", self.normalizer.is_some());
+        to.put_array("parameters", &self.parameters);
+        self.normalizer.as_ref().map_or(Ok(()), |normalizer| normalizer.save(to))
+    }
+
+    /// Reads a policy that [`Policy::save`] wrote.
+    ///
+    /// # Errors
+    /// Something is missing, damaged, or fits nothing else.
+    pub fn load(from: &mut Section) -> Result<Policy, SectionError> {
+        let config: NetworkConfig = from.get("network")?;
+        let observation: ObservationSpec = from.get("observation")?;
+        let possible = |dim: usize| (1..=MAX_DIM).contains(&dim);
+        let grid = observation.grid.unwrap_or([1; 3]);
+        let action: usize = from.get("action")?;
+        if !possible(action) || observation.vector > MAX_DIM || !grid.into_iter().all(possible) {
+            let message = format!("its observation {observation:?} or action {action} cannot be");
+            return Err(SectionError(message));
         }
+        let policy = Policy::new(&config, &observation, action);
+        let mut policy = policy.map_err(|error| SectionError(format!("its network: {error}")))?;
+        policy.parameters = from.take_finite("parameters", policy.parameters.len())?;
+        if from.get("normalized")? {
+            policy.normalizer = Some(RunningMeanStd::load(from, observation.dim())?);
+        }
+        Ok(policy)
     }
 }
 
-/// Inputs and outputs `[n, height * width * channels]`, channels last.
-fn convolve(
-    layer: &Layer,
-    input: Tensor<2>,
-    weights: Tensor<2>,
-    biases: Option<Tensor<1>>,
-) -> Tensor<2> {
-    let ([height, width, channels], samples) = (layer.inputs(), input.dims()[0]);
-    let input: Tensor<4> = input.reshape([samples, height, width, channels]);
-    let size = layer.size();
-    let weights: Tensor<4> = weights.reshape([size, size, channels, layer.filters()]);
-    let options = ConvOptions::new([layer.stride(); 2], [0; 2], [1; 2], 1);
-    let output = conv2d(
-        input.permute([0, 3, 1, 2]),
-        weights.permute([3, 2, 0, 1]),
-        biases,
-        options,
-    );
-    let output = output.permute([0, 2, 3, 1]);
-    output.reshape([samples, floats(layer.outputs())])
-}
+/// The largest dimension that a file may ask for.
+const MAX_DIM: usize = 1 << 16;

@@ -1,7 +1,6 @@
 //! One step of Adam. Shader: `shaders/learn/adam.wgsl`.
 
-use crate::gpu::buffer::Argument;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Argument, Buffer, Gpu, shader};
 use multiversion::multiversion;
 
 crate::shader_params! {

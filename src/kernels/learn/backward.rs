@@ -1,8 +1,7 @@
 //! Gradients with respect to the sums of all layers. Shader: `shaders/learn/backward.wgsl`.
 
 use super::network::BLOCK;
-use crate::gpu::buffer::Argument;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Argument, Buffer, Gpu, shader};
 
 crate::shader_params! {
     pub struct Params for backward {

@@ -1,8 +1,7 @@
 //! Outputs of dense networks. Shader: `shaders/learn/forward.wgsl`.
 
 use super::network::BLOCK;
-use crate::gpu::buffer::Argument;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Argument, Buffer, Gpu, shader};
 
 crate::shader_params! {
     pub struct Params for forward {

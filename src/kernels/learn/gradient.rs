@@ -1,8 +1,7 @@
 //! Gradients of all parameters over each split of a minibatch. Shader: `shaders/learn/gradient.wgsl`.
 
 use super::network::{BLOCK, BatchLayout, LANES, LayerWords};
-use crate::gpu::buffer::Argument;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Argument, Buffer, Gpu, shader};
 
 /// Workgroups of a launch.
 pub fn groups(layout: &BatchLayout) -> [u32; 3] {

@@ -2,9 +2,7 @@
 //! KL divergence of the new policy from the old and a bound on the critic's change. Shader:
 //! `shaders/learn/ppo_loss.wgsl`.
 
-use crate::gpu::buffer::Argument;
-use crate::gpu::kernel::groups;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Argument, Buffer, Gpu, groups, shader};
 
 crate::shader_params! {
     pub struct Params for ppo_loss {
@@ -28,12 +26,11 @@ crate::shader_params! {
 /// What is added up besides the gradient of `log_std`: surrogate, value loss, entropy, KL divergence,
 /// samples out of the clip range.
 pub const SUMS: usize = shader::ppo_loss::constants::SUMS as usize;
-/// Numbers of a sample behind observation, action and old mean: log probability, advantage, target, old
-/// value.
-pub const SCALARS: usize = 4;
+/// Numbers at the end of a sample: log probability, advantage, target, old value.
+const SCALARS: usize = 4;
 const HALF_LOG_TAU: f32 = 0.918_938_5;
 
-/// `dims`: numbers of an observation and of an action, and where `log_std` begins.
+/// `dims`: numbers of an observation, where `log_std` begins, numbers of an action.
 pub fn launch(
     gpu: &Gpu,
     dims: &Buffer<u32>,
@@ -58,8 +55,8 @@ pub fn launch(
     gpu.launch(&shader::PPO_LOSS, groups, &buffers, params);
 }
 
-/// The actor's part for `rows`, samples of which only what follows the observation is given. Writes the
-/// gradients over the `means`, `[rows][action]`, and adds to `extras`, `[action + SUMS]`.
+/// The actor's part for `rows`, whose last numbers are action, old mean, log probability, advantage,
+/// target, old value. Writes the gradients over the `means`, `[rows][action]`, and adds to `extras`, `[action + SUMS]`.
 pub fn actor(
     log_std: &[f32],
     old_log_std: &[f32],
@@ -79,6 +76,7 @@ pub fn actor(
     let kl_of_std: f32 = kl_of_std.map(|(ratio, diff)| 0.5 * (ratio - 1.0) - diff).sum();
     let (d_log_std, sums) = extras.split_at_mut(actions);
     for (row, mean) in rows.iter().zip(means.chunks_exact_mut(actions)) {
+        let (_, row) = row.split_at(row.len() - 2 * actions - SCALARS);
         let (action, row) = row.split_at(actions);
         let (old_mean, scalars) = row.split_at(actions);
         let (old_log_prob, advantage) = (scalars[0], scalars[1]);

@@ -1,15 +1,6 @@
-//! Adds up the splits of a gradient and of the objective's sums. Shader: `shaders/learn/reduce_grads.wgsl`.
+//! Adds up the splits of a gradient, and adds those of the objective's sums to them. Shader: `shaders/learn/reduce_grads.wgsl`.
 
-use crate::gpu::buffer::Argument;
-use crate::gpu::kernel::groups;
-use crate::gpu::{Buffer, Gpu, shader};
-
-crate::shader_params! {
-    pub struct Params for reduce_grads {
-        /// 1: the sums begin. 0: they are added to.
-        pub begin: u32,
-    }
-}
+use crate::gpu::{Argument, Buffer, Gpu, groups, shader};
 
 pub fn launch(
     gpu: &Gpu,
@@ -17,9 +8,8 @@ pub fn launch(
     partials: &Buffer<f32>,
     gradient: &Buffer<f32>,
     sums: &Buffer<f32>,
-    params: &Params,
 ) {
     let groups = groups(&shader::REDUCE_GRADS, gradient.len() + sums.len());
     let buffers: [&dyn Argument; 4] = [layout, partials, gradient, sums];
-    gpu.launch(&shader::REDUCE_GRADS, groups, &buffers, params);
+    gpu.launch(&shader::REDUCE_GRADS, groups, &buffers, &());
 }

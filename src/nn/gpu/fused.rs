@@ -4,9 +4,10 @@
 use crate::gpu::{Array, Buffer, Device, Gpu};
 use crate::kernels::learn::network::{BatchLayout, IDENTITY, MAX_ROWS, RELU, TANH};
 use crate::kernels::learn::{backward, forward, gradient, reduce_grads};
-use crate::nn::engine::{EngineSize, Rows};
+use super::{Samples, dims};
+use crate::nn::engine::EngineSize;
 use crate::nn::layer::Activation;
-use crate::nn::network::Network;
+use crate::nn::network::{LayerParams, Network};
 use crate::nn::objective::{GpuBatch, Objective};
 
 /// The widest layer; wider ones are quicker as products of matrices.
@@ -18,6 +19,7 @@ const AT_ONCE: usize = 1 << 14;
 pub struct Fused {
     gpu: Gpu,
     networks: usize,
+    dims: Buffer<u32>,
     /// To evaluate with.
     forward: Layout,
     /// To learn with, one for each size of a minibatch that there was.
@@ -51,7 +53,8 @@ impl Fused {
     /// None if a layer is not dense or too wide, or what a minibatch needs too large for the device.
     pub fn new(gpu: &Gpu, networks: &[Network], size: EngineSize) -> Option<Self> {
         let layers = networks.iter().map(dense).collect::<Option<Vec<_>>>()?;
-        let layout = BatchLayout::new(&layers, size.parameters, size.sums, size.minibatch)?;
+        let sums = size.extras - size.others(networks);
+        let layout = BatchLayout::new(&layers, size.parameters, sums, size.minibatch)?;
         let forward = layout.clone().with_rows(size.max_rows.clamp(1, AT_ONCE));
         let device = Device::from(gpu.clone());
         let rows = forward.numbers().max(layout.numbers());
@@ -63,6 +66,7 @@ impl Fused {
         let outputs = size.minibatch * layout.outputs(0, networks.len());
         Some(Fused {
             networks: networks.len(),
+            dims: dims(gpu, networks, size),
             rows: empty(rows),
             grads: empty(layout.numbers()),
             outputs: empty(outputs),
@@ -79,17 +83,17 @@ impl Fused {
         &self,
         network: usize,
         parameters: &Array,
-        rows: Rows,
+        batch: Samples,
         out: &mut Array,
         out_at: usize,
     ) {
         let outputs = self.forward.host.outputs(network, network + 1);
         let most = self.forward.host.head.rows as usize;
-        for start in (0..rows.count).step_by(most) {
+        for start in (0..batch.count).step_by(most) {
             let params = forward::Params {
-                rows: most.min(rows.count - start) as u32,
-                start: (rows.first + start) as u32,
-                width: rows.width as u32,
+                rows: most.min(batch.count - start) as u32,
+                start: (batch.first + start) as u32,
+                width: batch.width as u32,
                 network: network as u32,
                 out_at: (out_at + start * outputs) as u32,
             };
@@ -97,7 +101,7 @@ impl Fused {
                 &self.gpu,
                 1,
                 &self.forward.table,
-                rows.values.buffer(),
+                batch.values.buffer(),
                 parameters.buffer(),
                 &self.rows,
                 out.buffer(),
@@ -109,19 +113,18 @@ impl Fused {
     pub fn gradient(
         &mut self,
         parameters: &Array,
-        rows: Rows,
+        batch: Samples,
         objective: &dyn Objective,
         gradient: &mut Array,
         sums: &mut Array,
-        begin: bool,
     ) {
-        let number = self.layout(rows.count);
+        let number = self.layout(batch.count);
         let (gpu, table) = (&self.gpu, &self.minibatch[number].table);
-        let (samples, parameters) = (rows.values.buffer(), parameters.buffer());
+        let (samples, parameters) = (batch.values.buffer(), parameters.buffer());
         let params = forward::Params {
-            rows: rows.count as u32,
-            start: rows.first as u32,
-            width: rows.width as u32,
+            rows: batch.count as u32,
+            start: batch.first as u32,
+            width: batch.width as u32,
             network: 0,
             out_at: 0,
         };
@@ -136,19 +139,20 @@ impl Fused {
             outputs,
             &params,
         );
-        let batch = GpuBatch {
+        let buffers = GpuBatch {
+            dims: &self.dims,
             samples,
-            width: rows.width,
-            first: rows.first,
-            rows: rows.count,
+            width: batch.width,
+            first: batch.first,
+            rows: batch.count,
             parameters,
             outputs,
             output_grads: &self.output_grads,
             extras: &self.extras,
         };
-        objective.launch(gpu, &batch);
+        objective.launch(gpu, &buffers);
         let params = backward::Params {
-            rows: rows.count as u32,
+            rows: batch.count as u32,
         };
         backward::launch(
             gpu,
@@ -164,10 +168,7 @@ impl Fused {
         let groups = gradient::groups(&self.minibatch[number].host);
         gradient::launch(gpu, groups, table, activations, &self.grads, &self.partials);
         let (gradient, sums) = (gradient.buffer(), sums.buffer());
-        let begin = reduce_grads::Params {
-            begin: u32::from(begin),
-        };
-        reduce_grads::launch(gpu, table, &self.partials, gradient, sums, &begin);
+        reduce_grads::launch(gpu, table, &self.partials, gradient, sums);
     }
 
     /// Number of the layout for so many rows.
@@ -183,7 +184,7 @@ impl Fused {
 
 /// Inputs, outputs and activation of every layer, if all are dense and narrow.
 fn dense(network: &Network) -> Option<Vec<(usize, usize, u32)>> {
-    let layer = |params: &crate::nn::network::LayerParams| {
+    let layer = |params: &LayerParams| {
         let layer = &params.layer;
         let (inputs, outputs) = (layer.patch(), layer.filters());
         let narrow = layer.is_dense() && inputs.max(outputs) <= MAX_WIDTH;

@@ -2,9 +2,10 @@
 //! gradients are taken by hand.
 
 use super::tensors::{column_sums, write};
+use super::{Samples, dims};
 use crate::gpu::tensor::{from_buffer, to_buffer};
 use crate::gpu::{Array, Buffer, Device, Gpu};
-use crate::nn::engine::{EngineSize, Rows};
+use crate::nn::engine::EngineSize;
 use crate::nn::layer::{Activation, Layer};
 use crate::nn::network::{LayerParams, Network};
 use crate::nn::objective::{GpuBatch, Objective};
@@ -21,6 +22,7 @@ const AT_ONCE: usize = 1 << 24;
 /// What the networks need on the device.
 pub struct Layerwise {
     gpu: Gpu,
+    dims: Buffer<u32>,
     /// Parameters behind the networks', and all extras.
     others: usize,
     extras: usize,
@@ -33,12 +35,11 @@ impl Layerwise {
         let widest = networks.iter().map(widest).max().unwrap_or(0);
         let device = Device::from(gpu.clone());
         device.holds("activations of a minibatch", size.minibatch * widest)?;
-        let behind = networks.last().map_or(0, |last| last.span().end);
-        let others = size.parameters - behind;
         Ok(Layerwise {
             gpu: gpu.clone(),
-            others,
-            extras: others + size.sums,
+            dims: dims(gpu, networks, size),
+            others: size.others(networks),
+            extras: size.extras,
         })
     }
 
@@ -46,21 +47,21 @@ impl Layerwise {
         &self,
         network: &Network,
         parameters: &Array,
-        rows: Rows,
+        batch: Samples,
         out: &mut Array,
         out_at: usize,
     ) {
         let most = (AT_ONCE / widest(network)).max(1);
         let flat = self.flat(parameters);
         let part = |start: usize| {
-            let rows = Rows {
-                first: rows.first + start,
-                count: most.min(rows.count - start),
-                ..rows
+            let batch = Samples {
+                first: batch.first + start,
+                count: most.min(batch.count - start),
+                ..batch
             };
-            Pass::new(network, &flat, self.observations(network, rows)).1
+            Pass::new(network, &flat, self.observations(network, batch)).1
         };
-        for start in (0..rows.count).step_by(most) {
+        for start in (0..batch.count).step_by(most) {
             let at = out_at + start * network.outputs();
             write(&self.gpu, part(start), out, at);
         }
@@ -70,15 +71,14 @@ impl Layerwise {
         &self,
         networks: &[Network],
         parameters: &Array,
-        rows: Rows,
+        batch: Samples,
         objective: &dyn Objective,
         gradient: &mut Array,
         sums: &mut Array,
-        begin: bool,
     ) {
-        let (gpu, count) = (&self.gpu, rows.count);
+        let (gpu, count) = (&self.gpu, batch.count);
         let flat = self.flat(parameters);
-        let pass = |network: &Network| Pass::new(network, &flat, self.observations(network, rows));
+        let pass = |network: &Network| Pass::new(network, &flat, self.observations(network, batch));
         let (passes, outputs): (Vec<Pass>, Vec<Tensor<2>>) = networks.iter().map(pass).unzip();
         let outputs = outputs.into_iter().map(|outputs| outputs.flatten(0, 1));
         let outputs = to_buffer(Tensor::<1>::cat(outputs.collect(), 0));
@@ -86,17 +86,18 @@ impl Layerwise {
             Buffer::empty(gpu, outputs.len()),
             Buffer::empty(gpu, count * self.extras),
         );
-        let batch = GpuBatch {
-            samples: rows.values.buffer(),
-            width: rows.width,
-            first: rows.first,
+        let buffers = GpuBatch {
+            dims: &self.dims,
+            samples: batch.values.buffer(),
+            width: batch.width,
+            first: batch.first,
             rows: count,
             parameters: parameters.buffer(),
             outputs: &outputs,
             output_grads: &output_grads,
             extras: &extras,
         };
-        objective.launch(gpu, &batch);
+        objective.launch(gpu, &buffers);
         let output_grads: Tensor<1> = from_buffer(gpu, &output_grads, [output_grads.len()]);
         let mut parts = Vec::new();
         let mut at = 0;
@@ -114,11 +115,8 @@ impl Layerwise {
         *gradient = Array::Gpu(to_buffer(Tensor::cat(parts, 0)));
         if self.extras > self.others {
             let new = extras.narrow(0, self.others, self.extras - self.others);
-            let new = match begin {
-                true => new,
-                false => new.add(from_buffer(gpu, sums.buffer(), [sums.len()])),
-            };
-            *sums = Array::Gpu(to_buffer(new));
+            let before = from_buffer(gpu, sums.buffer(), [sums.len()]);
+            *sums = Array::Gpu(to_buffer(new.add(before)));
         }
     }
 
@@ -127,11 +125,11 @@ impl Layerwise {
     }
 
     /// `[rows, observation]`
-    fn observations(&self, network: &Network, rows: Rows) -> Tensor<2> {
-        let height = rows.values.len() / rows.width;
-        let all: Tensor<2> = from_buffer(&self.gpu, rows.values.buffer(), [height, rows.width]);
+    fn observations(&self, network: &Network, batch: Samples) -> Tensor<2> {
+        let height = batch.values.len() / batch.width;
+        let all: Tensor<2> = from_buffer(&self.gpu, batch.values.buffer(), [height, batch.width]);
         let observation = network.observation().dim();
-        all.slice([rows.first..rows.first + rows.count, 0..observation])
+        all.slice([batch.first..batch.first + batch.count, 0..observation])
     }
 }
 
