@@ -1,33 +1,33 @@
-//! `footwork bench`: what each device makes of each stage, beside what it could do at most.
+//! `footwork bench`: the speed of each stage on each device, beside what the device could do at most.
 //!
-//! [`bench_device`] is where something runs, [`clock`] how it is timed, [`roofline`] what the place can do at most;
-//! [`data`] are databases of any size; [`search`], [`world`], [`learn`] and [`training`] are the stages.
+//! [`bench_device`] is where a stage runs, [`clock`] how it is timed, [`roofline`] what the device can do
+//! at most; [`data`] are databases of any size. The other modules are the stages.
 
-mod roofline;
+mod bench_device;
 mod clock;
 mod data;
+mod drawing;
+mod environment;
 mod learn;
-mod bench_device;
+mod roofline;
 mod search;
 mod training;
-mod world;
 
 use crate::gpu::Choice;
-use crate::motion::database::Database;
+use crate::matching::MotionMatcher;
 use anyhow::{Result, ensure};
-use roofline::Ceiling;
-use clock::Work;
-use bench_device::Place;
+use bench_device::BenchDevice;
+use roofline::Roofline;
 use serde::Serialize;
 use std::path::Path;
 use std::sync::Arc;
 
 /// One measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct Measurement {
     /// One of [`STAGES`].
     pub stage: &'static str,
-    /// What of it, like `indexed`.
+    /// A variant of the stage, like `indexed`.
     pub variant: String,
     /// The adapter's name, or `cpu`.
     pub device: String,
@@ -43,120 +43,132 @@ pub struct Row {
     pub per_s: f64,
     /// Memory that the stage needs for its arrays, where that is known.
     pub bytes: Option<usize>,
-    /// Share of what the device's memory or arithmetic allows at most, where the work of an item is
-    /// a fixed number of bytes or operations.
+    /// Fraction of what the device's memory or arithmetic allows, where an item costs a fixed number of
+    /// bytes or operations.
     pub roofline: Option<f64>,
 }
 
 /// Names for `--filter`.
-pub const STAGES: [&str; 9] = [
+pub const STAGES: [&str; 10] = [
     "memory",
     "arithmetic",
     "search",
-    "rasterise",
+    "rasterize_maps",
     "hits",
     "environment",
     "network",
     "update",
     "training",
+    "drawing",
 ];
 
 /// What to measure.
-pub struct Plan<'a> {
+pub struct BenchPlan<'a> {
     /// Stages with this in their name.
     pub filter: &'a str,
     /// `Auto`: every device there is.
     pub device: Choice,
+    /// A database file, a BVH file or a folder of them.
     pub data: Option<&'a Path>,
 }
 
-impl Plan<'_> {
-    fn wants(&self, stage: &str) -> bool {
+impl BenchPlan<'_> {
+    fn selects(&self, stage: &str) -> bool {
         stage.contains(self.filter)
     }
 }
 
-/// Rows so far; each is also told to whoever waits.
-struct Record<'a> {
-    rows: Vec<Row>,
+/// The measurements so far; `tell` hears what is under way.
+struct Recorder<'a> {
+    measurements: Vec<Measurement>,
     tell: &'a dyn Fn(&str),
 }
 
-/// What a row says beside its place and its speed.
-struct Item<'a> {
+/// Bytes and operations that an item costs at least; 0 where that is no fixed number.
+#[derive(Clone, Copy, Default)]
+struct ItemCost {
+    /// Bytes read and written.
+    bytes: f64,
+    /// Multiplications and additions.
+    operations: f64,
+}
+
+/// What is measured, beside the device.
+struct Workload<'a> {
     stage: &'static str,
     variant: &'a str,
     frames: usize,
     envs: usize,
     batch: usize,
     bytes: Option<usize>,
-    work: Work,
+    cost: ItemCost,
 }
 
-impl Record<'_> {
-    fn add(&mut self, place: &Place, ceiling: &Ceiling, item: Item, seconds: f64) {
-        let per_s = item.batch as f64 / seconds;
-        self.rows.push(Row {
-            stage: item.stage,
-            variant: item.variant.to_string(),
-            device: place.device_name(),
-            threads: place.threads,
-            frames: item.frames,
-            envs: item.envs,
-            batch: item.batch,
+impl Recorder<'_> {
+    fn add(&mut self, on: &BenchDevice, roofline: &Roofline, workload: Workload, seconds: f64) {
+        let per_s = workload.batch as f64 / seconds;
+        self.measurements.push(Measurement {
+            stage: workload.stage,
+            variant: workload.variant.to_string(),
+            device: on.device_name(),
+            threads: on.threads,
+            frames: workload.frames,
+            envs: workload.envs,
+            batch: workload.batch,
             per_s,
-            bytes: item.bytes,
-            roofline: ceiling.share(item.work, per_s),
+            bytes: workload.bytes,
+            roofline: roofline.fraction(workload.cost, per_s),
         });
     }
 }
 
-/// Measures what `plan` asks for, on one device after another; `tell` hears what is under way.
+/// Measures what `plan` selects, on one device after another; `tell` hears what is under way.
 ///
 /// # Errors
-/// The data cannot be read, there is no such device or it was lost, or nothing is called like the filter.
-pub fn run(plan: &Plan, tell: &dyn Fn(&str)) -> Result<Vec<Row>> {
+/// The data cannot be read, there is no such device or it was lost, or no stage matches the filter.
+pub fn run(plan: &BenchPlan, tell: &dyn Fn(&str)) -> Result<Vec<Measurement>> {
     ensure!(
-        STAGES.iter().any(|stage| plan.wants(stage)),
+        STAGES.iter().any(|stage| plan.selects(stage)),
         "no stage is called like {}: there are {}",
         plan.filter,
         STAGES.join(", ")
     );
-    let places = bench_device::all(plan.device)?;
-    let motion = data::Motion::load(plan.data)?;
-    let mut record = Record {
-        rows: Vec::new(),
+    let devices = BenchDevice::all(plan.device)?;
+    let data = data::BenchData::load(plan.data)?;
+    let mut record = Recorder {
+        measurements: Vec::new(),
         tell,
     };
-    let ceilings = places
+    let rooflines = devices
         .iter()
-        .map(|place| roofline::measure(plan, place, &mut record))
+        .map(|on| roofline::measure(plan, on, &mut record))
         .collect::<Result<Vec<_>>>()?;
-    let places: Vec<_> = places.iter().zip(&ceilings).collect();
-    if plan.wants("search") {
-        search::measure(&motion, &places, &mut record)?;
+    let devices: Vec<_> = devices.iter().zip(&rooflines).collect();
+    if plan.selects("search") {
+        search::measure(&data, &devices, &mut record)?;
     }
-    let database: Arc<Database> = motion.whole();
-    for (place, ceiling) in places {
+    let matcher = Arc::new(MotionMatcher::new(data.database));
+    for (on, roofline) in devices {
         let bench = Bench {
             plan,
-            place,
-            ceiling,
-            database: &database,
+            on,
+            roofline,
+            matcher: &matcher,
         };
-        world::measure(&bench, &mut record)?;
+        environment::measure(&bench, &mut record)?;
         learn::measure(&bench, &mut record)?;
         training::measure(&bench, &mut record)?;
+        drawing::measure(&bench, &mut record)?;
     }
-    Ok(record.rows)
+    Ok(record.measurements)
 }
 
-/// What the stages behind the search share.
+/// What the stages after the search share.
 struct Bench<'a> {
-    plan: &'a Plan<'a>,
-    place: &'a Place,
-    ceiling: &'a Ceiling,
-    database: &'a Arc<Database>,
+    plan: &'a BenchPlan<'a>,
+    on: &'a BenchDevice,
+    roofline: &'a Roofline,
+    matcher: &'a Arc<MotionMatcher>,
 }
 
 /// Environments of a batch.

@@ -1,13 +1,14 @@
-//! What a device can do at most: the roofline.
+//! The roofline: what a device can do at most.
 
-use super::clock::{Work, seconds};
-use super::bench_device::Place;
-use super::{Item, Plan, Record};
+use super::bench_device::BenchDevice;
+use super::clock::seconds;
+use super::{BenchPlan, ItemCost, Recorder, Workload};
 use crate::gpu::{Buffer, Device};
 use crate::kernels::bench::{arithmetic, bandwidth};
 use anyhow::Result;
 
-pub struct Ceiling {
+/// Peak rates of a device.
+pub struct Roofline {
     bytes_per_s: f64,
     operations_per_s: f64,
 }
@@ -18,23 +19,24 @@ const COPIED: u32 = 1 << 23;
 const ADDED: u32 = 1 << 16;
 const ROUNDS: u32 = 64;
 
-impl Ceiling {
-    /// Of what memory or arithmetic allow, whichever is nearer.
-    pub fn share(&self, work: Work, per_s: f64) -> Option<f64> {
-        let bytes = work.bytes * per_s / self.bytes_per_s;
-        let operations = work.operations * per_s / self.operations_per_s;
-        Some(bytes.max(operations)).filter(|&share| share > 0.0)
+impl Roofline {
+    /// The fraction of what memory or arithmetic allow, whichever is nearer; none if an item has no fixed
+    /// cost.
+    pub fn fraction(&self, cost: ItemCost, per_s: f64) -> Option<f64> {
+        let bytes = cost.bytes * per_s / self.bytes_per_s;
+        let operations = cost.operations * per_s / self.operations_per_s;
+        Some(bytes.max(operations)).filter(|&fraction| fraction > 0.0)
     }
 }
 
-/// Measured whatever the filter, but only written down if it asks for it.
-pub fn measure(plan: &Plan, place: &Place, record: &mut Record) -> Result<Ceiling> {
-    (record.tell)(&format!("{}: memory, arithmetic", place.name()));
-    let copy_s = copy(place)?;
-    let add_s = add(place)?;
+/// Measures a device whatever the filter, but records that only if the filter selects it.
+pub fn measure(plan: &BenchPlan, on: &BenchDevice, record: &mut Recorder) -> Result<Roofline> {
+    (record.tell)(&format!("{}: memory, arithmetic", on.name()));
+    let copy_s = copy(on)?;
+    let add_s = add(on)?;
     let copied = 32.0 * f64::from(COPIED);
     let added = (arithmetic::OPERATIONS * u64::from(ADDED) * u64::from(ROUNDS)) as f64;
-    let ceiling = Ceiling {
+    let roofline = Roofline {
         bytes_per_s: copied / copy_s,
         operations_per_s: added / add_s,
     };
@@ -42,57 +44,57 @@ pub fn measure(plan: &Plan, place: &Place, record: &mut Record) -> Result<Ceilin
         ("memory", "bytes copied", copied, copy_s),
         ("arithmetic", "operations", added, add_s),
     ] {
-        if plan.wants(stage) {
-            let item = Item {
+        if plan.selects(stage) {
+            let workload = Workload {
                 stage,
                 variant,
                 frames: 0,
                 envs: 0,
                 batch: items as usize,
                 bytes: None,
-                work: Work::default(),
+                cost: ItemCost::default(),
             };
-            record.add(place, &ceiling, item, time);
+            record.add(on, &roofline, workload, time);
         }
     }
-    Ok(ceiling)
+    Ok(roofline)
 }
 
-fn copy(place: &Place) -> Result<f64> {
+fn copy(on: &BenchDevice) -> Result<f64> {
     let params = bandwidth::Params::new(COPIED);
     let source = vec![[1.0f32; 4]; COPIED as usize];
-    if let Device::Gpu(gpu) = &place.device {
+    if let Device::Gpu(gpu) = &on.device {
         let source = Buffer::from_slice(gpu, source.as_flattened());
         let copy = Buffer::zeroed(gpu, source.len());
-        return seconds(place, || {
+        return seconds(on, || {
             bandwidth::launch(gpu, &source, &copy, &params);
             Ok(())
         });
     }
     let mut copy = vec![[0.0f32; 4]; COPIED as usize];
-    place.inside(|| {
-        seconds(place, || {
+    on.install(|| {
+        seconds(on, || {
             bandwidth::twin(&source, &mut copy, &params);
             Ok(())
         })
     })
 }
 
-fn add(place: &Place) -> Result<f64> {
+fn add(on: &BenchDevice) -> Result<f64> {
     let params = arithmetic::Params {
         count: ADDED,
         rounds: ROUNDS,
     };
     let mut sums = vec![[1.0f32; 4]; ADDED as usize];
-    if let Device::Gpu(gpu) = &place.device {
+    if let Device::Gpu(gpu) = &on.device {
         let sums = Buffer::from_slice(gpu, sums.as_flattened());
-        return seconds(place, || {
+        return seconds(on, || {
             arithmetic::launch(gpu, &sums, &params);
             Ok(())
         });
     }
-    place.inside(|| {
-        seconds(place, || {
+    on.install(|| {
+        seconds(on, || {
             arithmetic::twin(&mut sums, &params);
             Ok(())
         })

@@ -176,10 +176,27 @@ impl Database {
         &self.clips[after - 1]
     }
 
+    /// A clip as it was recorded, at 30 Hz; all clips have the skeleton of the first.
+    pub fn recording(&self, clip: usize) -> Clip {
+        let ClipRecord { first, frames, .. } = self.clips[clip];
+        let joints = self.skeleton.joints();
+        Clip {
+            name: self.clips[clip].name.clone(),
+            skeleton: self.skeleton.clone(),
+            rate: super::RATE,
+            positions: self.hips[first..][..frames].to_vec(),
+            rotations: self.rotations[first * joints..][..frames * joints].to_vec(),
+            source: self.clips[clip].source.clone(),
+            licence: self.clips[clip].licence.clone(),
+        }
+    }
+
+    /// Frames of all clips.
     pub fn frames(&self) -> usize {
         self.features.len()
     }
 
+    /// Length of all clips together, minutes.
     pub fn minutes(&self) -> f32 {
         self.frames() as f32 / super::RATE / 60.0
     }
