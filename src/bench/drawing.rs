@@ -1,7 +1,9 @@
 //! Pictures of 1280 x 720 pixels: one character, one among obstacles, and crowds.
 
 use super::clock::seconds;
-use super::{Bench, ItemCost, Recorder, Workload};
+use super::recorder::{Recorder, Workload};
+use super::roofline::ItemCost;
+use super::stage::Bench;
 use crate::env::locomotion::{EnvConfig, LEVELS, LocomotionTask, Obstacles, Plane};
 use crate::gpu::{Device, Gpu};
 use crate::playback::player::Style;

@@ -1,7 +1,9 @@
 //! The motion-matching environments alone: random actions of standard deviation 1, no networks.
 
 use super::clock::{MAX_CALL_S, seconds};
-use super::{Bench, ENVS, ItemCost, Recorder, Workload};
+use super::recorder::{Recorder, Workload};
+use super::roofline::ItemCost;
+use super::stage::{Bench, ENVS};
 use crate::env::locomotion::{CpuLocomotion, EnvConfig, LEVELS, LocomotionTask, Obstacles, Plane};
 use crate::env::{Transition, VecEnv};
 use crate::gpu::{Array, Buffer, Device, Gpu};

@@ -3,7 +3,9 @@
 
 use super::clock::{MAX_CALL_S, seconds};
 use super::training::{config, held};
-use super::{Bench, ENVS, ItemCost, Recorder, Workload};
+use super::recorder::{Recorder, Workload};
+use super::roofline::ItemCost;
+use super::stage::{Bench, ENVS};
 use crate::motion::features::TRAJECTORY_DIM;
 use crate::nn::network::Shape;
 use crate::rl::rollout::Rollout;

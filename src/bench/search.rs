@@ -7,8 +7,8 @@
 use super::bench_device::BenchDevice;
 use super::clock::{MAX_CALL_S, seconds};
 use super::data::BenchData;
-use super::roofline::Roofline;
-use super::{ItemCost, Recorder, Workload};
+use super::recorder::{Recorder, Workload};
+use super::roofline::{ItemCost, Roofline};
 use crate::gpu::{Buffer, Device};
 use crate::kernels::rng::{gaussian, index_below, random4};
 use crate::kernels::search::search_exact;

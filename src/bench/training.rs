@@ -1,7 +1,9 @@
 //! Whole training, an update at a time: worlds, networks, learning and the one read-back.
 
 use super::clock::{MAX_CALL_S, seconds};
-use super::{Bench, ENVS, ItemCost, Recorder, Workload};
+use super::recorder::{Recorder, Workload};
+use super::roofline::ItemCost;
+use super::stage::{Bench, ENVS};
 use crate::motion::features::TRAJECTORY_DIM;
 use crate::rl::rollout;
 use crate::rl::ppo::update::Learner;

@@ -1,8 +1,8 @@
 //! Everything motion matching and playback need of a set of clips, in plain arrays.
 
+use super::character_frame::to_local;
 use super::clip::Clip;
 use super::features::{FEATURE_DIM, FRAMES_PER_STEP, MIN_FUTURE_FRAMES, ROW_STRIDE, extract};
-use super::character_frame::to_local;
 use super::normalise::{Normalisation, Weights};
 use super::roles::Roles;
 use super::skeleton::Skeleton;
@@ -87,7 +87,10 @@ impl Database {
     /// If no clip is longer than the 30 future frames a candidate needs.
     pub fn build(clips: &[Clip], roles: Roles, weights: Weights) -> Result<Self, NothingToMatch> {
         use rayon::prelude::*;
-        let clips: Vec<&Clip> = clips.iter().filter(|clip| clip.frames() > MIN_FUTURE_FRAMES).collect();
+        let clips: Vec<&Clip> = clips
+            .iter()
+            .filter(|clip| clip.frames() > MIN_FUTURE_FRAMES)
+            .collect();
         let Some(first) = clips.first() else {
             return Err(NothingToMatch);
         };

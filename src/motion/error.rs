@@ -83,7 +83,10 @@ pub enum MotionError {
 
     /// An error of a function that knows no files, met while working on this one.
     #[error("{}: {error}", .path.display())]
-    In { path: PathBuf, error: Box<MotionError> },
+    In {
+        path: PathBuf,
+        error: Box<MotionError>,
+    },
 }
 
 impl MotionError {

@@ -1,20 +1,20 @@
 //! Motion: recordings, the procedural performer, features and the database.
 
 pub mod bvh;
+pub mod character_frame;
 pub mod clip;
 pub mod database;
 pub mod error;
 pub mod features;
-pub mod character_frame;
 pub mod import;
 pub mod manifest;
 pub mod mirror;
 pub mod normalise;
-pub mod synthetic;
 pub mod resample;
 pub mod roles;
 pub mod skeleton;
 pub mod smooth;
+pub mod synthetic;
 pub mod tpose;
 pub mod units;
 

@@ -7,17 +7,17 @@
 //! here is ever seen by the policy.
 
 pub mod contact;
-pub mod inertialize;
 pub mod foot_lock;
+pub mod inertialize;
 pub mod leg;
+pub mod placed_frame;
 pub mod player;
 pub mod pose;
 pub mod quality;
-pub mod placed_frame;
 mod spring;
 pub mod stitch;
 pub mod two_bone_ik;
 
+pub use placed_frame::PlacedFrame;
 pub use player::Player;
 pub use pose::CharacterPose;
-pub use placed_frame::PlacedFrame;

@@ -1,8 +1,8 @@
 //! Motion quality in numbers: foot skate, penetration, jumps, smoothness.
 
 use super::contact::{FootContact, SolePoints};
-use super::player::{Feet, Player, Style};
 use super::placed_frame::PlacedFrame;
+use super::player::{Feet, Player, Style};
 use crate::motion::RATE;
 use crate::motion::database::Database;
 use glam::Vec3;
@@ -80,9 +80,15 @@ struct Frame {
     jumped: bool,
 }
 
-fn play(database: &Arc<Database>, feet: &Arc<Feet>, style: Style, episode: &[PlacedFrame]) -> Vec<Frame> {
+fn play(
+    database: &Arc<Database>,
+    feet: &Arc<Feet>,
+    style: Style,
+    episode: &[PlacedFrame],
+) -> Vec<Frame> {
     let mut player = Player::new(database.clone(), feet.clone(), style, episode[0]);
-    episode.windows(2)
+    episode
+        .windows(2)
         .map(|pair| {
             let pose = player.next(pair[1]);
             let soles = feet.soles(database, &pose);

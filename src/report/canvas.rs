@@ -56,7 +56,12 @@ pub fn paint(
 
 impl Canvas<'_> {
     /// A line through `points` with round joints.
-    pub fn line(&mut self, points: &[Pixel], colour: RGBColor, width: f64) -> Result<(), ReportError> {
+    pub fn line(
+        &mut self,
+        points: &[Pixel],
+        colour: RGBColor,
+        width: f64,
+    ) -> Result<(), ReportError> {
         let pen = pen(colour, 1.0, width);
         // One piece at a time: a whole path is filled by the even-odd rule, which tears
         // holes wherever a noisy line crosses itself.

@@ -7,7 +7,7 @@ use plotters::style::RGBColor;
 
 use super::ReportError;
 use super::canvas::{Anchor, Canvas, paint};
-use super::chart::{self, Axis, PlotArea, Plot};
+use super::chart::{self, Axis, Plot, PlotArea};
 
 /// One value for each frame. Frames with a value that is not finite are left out.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use plotters::style::RGBColor;
 
 use super::ReportError;
 use super::canvas::{Canvas, Pixel};
-use super::chart::{self, Axis, PlotArea, Plot};
+use super::chart::{self, Axis, Plot, PlotArea};
 
 /// Distance from the target at which it counts as reached, in metres.
 pub const TARGET_RADIUS: f64 = 0.5;

@@ -3,7 +3,7 @@
 
 use super::ReportError;
 use super::canvas::{Anchor, Canvas, Pixel, paint, text_width};
-use super::chart::{self, PlotArea, Plot};
+use super::chart::{self, Plot, PlotArea};
 use super::ground;
 
 /// One walk to one target.

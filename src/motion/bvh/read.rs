@@ -1,9 +1,9 @@
 //! From the text of a BVH file to a recording.
 
-use crate::motion::error::{MotionError, MotionResult};
 use super::Recording;
 use super::hierarchy::{self, Channel, Hierarchy, problem};
 use super::values::{self, Values};
+use crate::motion::error::{MotionError, MotionResult};
 use glam::{Quat, Vec3};
 use std::io::Read;
 use std::path::Path;
