@@ -3,7 +3,7 @@
 use super::clock::seconds;
 use super::recorder::{Recorder, Workload};
 use super::roofline::ItemCost;
-use super::stage::Bench;
+use super::stage::BenchContext;
 use crate::env::locomotion::{EnvConfig, LEVELS, LocomotionTask, Obstacles, Plane};
 use crate::gpu::{Device, Gpu};
 use crate::playback::player::Style;
@@ -18,7 +18,7 @@ const SIZE: [u32; 2] = [1280, 720];
 const CROWDS: [usize; 3] = [256, 1024, 4096];
 
 /// Measures what draws: nothing does on the CPU.
-pub fn measure(bench: &Bench, record: &mut Recorder) -> Result<()> {
+pub fn measure(bench: &BenchContext, record: &mut Recorder) -> Result<()> {
     let Device::Gpu(gpu) = &bench.on.device else {
         return Ok(());
     };
@@ -53,7 +53,7 @@ pub fn measure(bench: &Bench, record: &mut Recorder) -> Result<()> {
     Ok(())
 }
 
-fn workload<'a>(bench: &Bench, variant: &'a str, envs: usize) -> Workload<'a> {
+fn workload<'a>(bench: &BenchContext, variant: &'a str, envs: usize) -> Workload<'a> {
     Workload {
         stage: "drawing",
         variant,

@@ -3,7 +3,7 @@
 use super::clock::{MAX_CALL_S, seconds};
 use super::recorder::{Recorder, Workload};
 use super::roofline::ItemCost;
-use super::stage::{Bench, ENVS};
+use super::stage::{BenchContext, ENVS};
 use crate::env::locomotion::{CpuLocomotion, EnvConfig, LEVELS, LocomotionTask, Obstacles, Plane};
 use crate::env::{Transition, VecEnv};
 use crate::gpu::{Array, Buffer, Device, Gpu};
@@ -20,7 +20,7 @@ use rayon::prelude::*;
 const ACTIONS: usize = 16;
 
 /// Measures both tasks in rising numbers of environments, on the hardest level.
-pub fn measure(bench: &Bench, record: &mut Recorder) -> Result<()> {
+pub fn measure(bench: &BenchContext, record: &mut Recorder) -> Result<()> {
     let tasks = [
         LocomotionTask::Plane(Plane::default()),
         LocomotionTask::Obstacles(Obstacles {
@@ -55,7 +55,7 @@ pub fn measure(bench: &Bench, record: &mut Recorder) -> Result<()> {
 }
 
 struct Stage<'a> {
-    bench: &'a Bench<'a>,
+    bench: &'a BenchContext<'a>,
     config: EnvConfig,
 }
 
@@ -86,7 +86,7 @@ impl Stage<'_> {
 
     /// Seconds of a whole step, search and observation included.
     fn step(&self, record: &mut Recorder) -> Result<f64> {
-        let Bench { on, roofline, .. } = *self.bench;
+        let BenchContext { on, roofline, .. } = *self.bench;
         let (task, envs) = (self.config.task.name(), self.config.envs);
         (record.tell)(&format!("{}: {task} of {envs}", on.name()));
         let time = on.install(|| -> Result<f64> {
@@ -107,7 +107,7 @@ impl Stage<'_> {
 
     /// Measures the kernels of maps and hits alone.
     fn kernels(&self, record: &mut Recorder) -> Result<()> {
-        let Bench {
+        let BenchContext {
             plan, on, roofline, ..
         } = *self.bench;
         let obstacles = 4.0 * ((boxes::FIELDS + VELOCITY_DIM) * self.config.task.obstacles()) as f64;
@@ -184,7 +184,7 @@ impl Part {
 }
 
 struct Kernels<'a> {
-    bench: &'a Bench<'a>,
+    bench: &'a BenchContext<'a>,
     /// All environments at the start of an episode.
     env: CpuLocomotion,
     action: Vec<f32>,

@@ -5,7 +5,7 @@ use super::clock::{MAX_CALL_S, seconds};
 use super::training::{config, held};
 use super::recorder::{Recorder, Workload};
 use super::roofline::ItemCost;
-use super::stage::{Bench, ENVS};
+use super::stage::{BenchContext, ENVS};
 use crate::motion::features::TRAJECTORY_DIM;
 use crate::nn::network::Shape;
 use crate::rl::rollout::Rollout;
@@ -15,7 +15,7 @@ use crate::train::config::{Config, Kind, Preset};
 use anyhow::{Context, Result};
 use burn::tensor::{Device, Distribution, Tensor};
 
-pub fn measure(bench: &Bench, record: &mut Recorder) -> Result<()> {
+pub fn measure(bench: &BenchContext, record: &mut Recorder) -> Result<()> {
     for (stage, measure) in [("network", forward as Stage), ("update", update)] {
         if !bench.plan.selects(stage) {
             continue;
@@ -34,10 +34,10 @@ pub fn measure(bench: &Bench, record: &mut Recorder) -> Result<()> {
 }
 
 /// Measures with so many environments and returns the seconds it takes once.
-type Stage = fn(&Bench, Kind, usize, &mut Recorder) -> Result<f64>;
+type Stage = fn(&BenchContext, Kind, usize, &mut Recorder) -> Result<f64>;
 
-fn forward(bench: &Bench, kind: Kind, envs: usize, record: &mut Recorder) -> Result<f64> {
-    let Bench { on, roofline, .. } = *bench;
+fn forward(bench: &BenchContext, kind: Kind, envs: usize, record: &mut Recorder) -> Result<f64> {
+    let BenchContext { on, roofline, .. } = *bench;
     let config = Config::preset(kind, Preset::Fast);
     let width = config.task.width();
     (record.tell)(&format!(
@@ -72,8 +72,8 @@ fn forward(bench: &Bench, kind: Kind, envs: usize, record: &mut Recorder) -> Res
 }
 
 /// An update from a rollout of noise.
-fn update(bench: &Bench, kind: Kind, envs: usize, record: &mut Recorder) -> Result<f64> {
-    let Bench { on, roofline, .. } = *bench;
+fn update(bench: &BenchContext, kind: Kind, envs: usize, record: &mut Recorder) -> Result<f64> {
+    let BenchContext { on, roofline, .. } = *bench;
     let config = config(kind, envs);
     let (ppo, width) = (&config.ppo, config.task.width());
     (record.tell)(&format!(

@@ -24,7 +24,7 @@ use bench_device::BenchDevice;
 pub use plan::{BenchPlan, STAGES};
 pub use recorder::Measurement;
 use recorder::Recorder;
-use stage::Bench;
+use stage::BenchContext;
 use std::sync::Arc;
 
 /// Measures what `plan` selects, on one device after another; `tell` hears what is under way.
@@ -54,7 +54,7 @@ pub fn run(plan: &BenchPlan, tell: &dyn Fn(&str)) -> Result<Vec<Measurement>> {
     }
     let matcher = Arc::new(MotionMatcher::new(data.database));
     for (on, roofline) in devices {
-        let bench = Bench {
+        let bench = BenchContext {
             plan,
             on,
             roofline,

@@ -7,7 +7,7 @@ use crate::matching::MotionMatcher;
 use std::sync::Arc;
 
 /// A device, and what is measured on it.
-pub struct Bench<'a> {
+pub struct BenchContext<'a> {
     pub plan: &'a BenchPlan<'a>,
     pub on: &'a BenchDevice,
     pub roofline: &'a Roofline,

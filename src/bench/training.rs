@@ -1,9 +1,9 @@
-//! Whole training, an update at a time: worlds, networks, learning and the one read-back.
+//! Whole training, an update at a time: environments, networks, learning and the one read-back.
 
 use super::clock::{MAX_CALL_S, seconds};
 use super::recorder::{Recorder, Workload};
 use super::roofline::ItemCost;
-use super::stage::{Bench, ENVS};
+use super::stage::{BenchContext, ENVS};
 use crate::motion::features::TRAJECTORY_DIM;
 use crate::rl::rollout;
 use crate::rl::ppo::update::Learner;
@@ -12,7 +12,7 @@ use crate::train::config::{Config, Kind, Preset};
 use crate::env::locomotion::{Batch, Setup};
 use anyhow::Result;
 
-pub fn measure(bench: &Bench, record: &mut Recorder) -> Result<()> {
+pub fn measure(bench: &BenchContext, record: &mut Recorder) -> Result<()> {
     if !bench.plan.selects("training") {
         return Ok(());
     }
@@ -37,14 +37,14 @@ pub(super) fn config(kind: Kind, envs: usize) -> Config {
 }
 
 /// Whether the device reaches a rollout's observations, packed with what else a sample has.
-pub(super) fn held(bench: &Bench, kind: Kind, envs: usize) -> bool {
+pub(super) fn held(bench: &BenchContext, kind: Kind, envs: usize) -> bool {
     let config = config(kind, envs);
     let numbers = config.ppo.batch() * (config.task.width() + 2 * TRAJECTORY_DIM + 4);
     bench.on.device.holds("samples", numbers).is_ok()
 }
 
-fn update(bench: &Bench, kind: Kind, envs: usize, record: &mut Recorder) -> Result<f64> {
-    let Bench { on, roofline, .. } = *bench;
+fn update(bench: &BenchContext, kind: Kind, envs: usize, record: &mut Recorder) -> Result<f64> {
+    let BenchContext { on, roofline, .. } = *bench;
     let config = config(kind, envs);
     let (task, ppo) = (config.task, &config.ppo);
     (record.tell)(&format!(

@@ -1,4 +1,4 @@
-//! Everything motion matching and playback need of a set of clips, in plain arrays.
+//! A set of clips as motion matching and playback need it, in plain arrays.
 
 use super::character_frame::to_local;
 use super::clip::Clip;
@@ -11,7 +11,7 @@ use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// A clip's place in the database.
+/// The frames of a clip in the database.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClipRecord {
     pub name: String,
@@ -50,11 +50,11 @@ pub struct Database {
     pub hips: Vec<Vec3>,
     /// Local rotations, `[frame][joint]`.
     pub rotations: Vec<Quat>,
-    /// Frames that can be matched, ascending. Search answers with places in this list.
+    /// Frames that can be matched, ascending. The search returns indices into this list.
     pub candidates: Vec<u32>,
-    /// One a candidate.
+    /// Root motion of each candidate.
     pub motion: Vec<RootMotion>,
-    /// Changes with anything that changes what a policy meets: features and root motion.
+    /// Checksum of all that a policy depends on: features and root motion.
     pub fingerprint: u32,
 }
 

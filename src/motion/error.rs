@@ -1,4 +1,4 @@
-//! What can go wrong between a file and a motion.
+//! Errors between a file and a motion.
 
 use crate::container::StoreError;
 use std::path::{Path, PathBuf};
@@ -90,7 +90,7 @@ pub enum MotionError {
 }
 
 impl MotionError {
-    /// The same error, saying which file it was met in.
+    /// This error, with the file in which it was met.
     pub fn within(self, path: &Path) -> MotionError {
         MotionError::In {
             path: path.to_path_buf(),

@@ -1,4 +1,4 @@
-//! What motion matching compares: 15 numbers of pose and 12 of future trajectory a frame.
+//! The features that motion matching compares: 15 numbers of pose and 12 of future trajectory a frame.
 
 use super::character_frame::to_local;
 use super::clip::Clip;

@@ -1,4 +1,4 @@
-//! Motion: recordings, the procedural performer, features and the database.
+//! Motion: recordings, synthetic motion, features and the database.
 
 pub mod bvh;
 pub mod character_frame;
@@ -18,5 +18,5 @@ pub mod synthetic;
 pub mod tpose;
 pub mod units;
 
-/// Frames a second of everything behind the import.
+/// Frames a second of all imported motion.
 pub const RATE: f32 = 30.0;

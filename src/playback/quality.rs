@@ -32,7 +32,7 @@ pub struct Quality {
 
 /// Quality under each style, and of the recordings themselves.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct QualityComparison {
     /// Shown frames, and how many of them follow a jump.
     pub frames: usize,
     pub jumps: usize,
@@ -45,7 +45,7 @@ pub struct Comparison {
 
 /// Evaluates episodes over one database: chains of placed frames, each beginning with the frame before
 /// the first that counts.
-pub fn compare(database: &Arc<Database>, episodes: &[Vec<PlacedFrame>]) -> Comparison {
+pub fn compare(database: &Arc<Database>, episodes: &[Vec<PlacedFrame>]) -> QualityComparison {
     use super::stitch::Stitching::{Inertialize, Linear};
     let feet = Arc::new(Feet::of(database));
     let style = |stitching, foot_locking| Style {
@@ -60,7 +60,7 @@ pub fn compare(database: &Arc<Database>, episodes: &[Vec<PlacedFrame>]) -> Compa
         sums
     };
     let raw = evaluated(Style::RAW, true);
-    Comparison {
+    QualityComparison {
         frames: raw.frames,
         jumps: raw.jumps,
         recorded: evaluated(Style::RAW, false).quality(),

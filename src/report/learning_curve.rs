@@ -250,10 +250,10 @@ fn draw_marks(canvas: &mut Canvas<'_>, plot: &Plot, marks: &[Mark]) -> Result<()
     Ok(())
 }
 
-/// A mark's label and its place above the panels.
+/// A mark's label and its position above the panels.
 struct Label<'a> {
     mark: &'a Mark,
-    /// Where its middle lies, in pixels from the left.
+    /// Its middle, in pixels from the left.
     middle: f64,
     /// 0 is the row next to the panels.
     row: usize,

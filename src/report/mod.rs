@@ -1,4 +1,4 @@
-//! What a run leaves behind for people: pictures, TensorBoard events and tables.
+//! Output of a run for people: pictures, TensorBoard events and tables.
 //!
 //! The pictures share one look. [`png_file`] writes a PNG whole or not at all,
 //! [`canvas`] draws smooth lines and text into one, [`chart`] adds the colours and

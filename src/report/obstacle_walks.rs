@@ -1,5 +1,5 @@
-//! Walks among moving obstacles, seen from above, and the obstacle maps that the policy
-//! saw on the way, laid out as the paper's figure 2.
+//! Episodes among moving obstacles, seen from above, and the obstacle maps that the policy
+//! observed on the way, laid out as the paper's figure 2.
 
 use plotters::style::RGBColor;
 
@@ -15,7 +15,7 @@ mod symbols;
 
 use episode::seconds;
 pub use episode::{CELLS, End, Episode, Map, Obstacle};
-use symbols::{OBSTACLE, SEEN, WAY, draw_arrow, draw_outline, draw_rectangle};
+use symbols::{OBSTACLE, SEEN, WAY, draw_arrow, draw_rectangle, turned};
 
 /// Half of what a panel shows, in metres: the square in which obstacles begin, and as
 /// much of them as may reach out of it.
@@ -37,7 +37,7 @@ const EPISODE: f64 = SIDE + BESIDE + maps::SIDE;
 /// Draws the episodes, each with its maps beside it, as a PNG. `step_s` is the time from
 /// one point to the next and from one map to the other, in seconds.
 ///
-/// Positions are drawn relative to the walk's start, in world axes: the viewer looks
+/// Positions are drawn relative to the start, in world axes: the viewer looks
 /// down, so z grows downwards and a turn to the left looks like one. The maps are in the
 /// character's frame, forward up and its left on the left.
 ///
@@ -108,7 +108,7 @@ fn colour(end: End) -> RGBColor {
     })
 }
 
-/// A panel, and what its whole walk shares.
+/// A panel, and what all of its episode shares.
 struct Scene<'a> {
     plot: &'a Plot,
     /// The world x and z that the panel is centred on.
@@ -229,7 +229,7 @@ impl Scene<'_> {
     }
 }
 
-/// The obstacle that ended the walk: the one nearest to its end.
+/// The obstacle that ended the episode: the one nearest to its end.
 fn hit(episode: &Episode) -> Option<&Obstacle> {
     let end = episode.points.last()?;
     let gap = |obstacle: &&Obstacle| {
@@ -263,7 +263,7 @@ fn draw_end(canvas: &mut Canvas<'_>, at: Pixel, end: End) -> Result<(), ReportEr
     }
 }
 
-/// The title, and how the walk ended.
+/// The title, and how the episode ended.
 fn draw_heading(
     canvas: &mut Canvas<'_>,
     plot: &Plot,

@@ -108,7 +108,7 @@ impl ScalingPanel {
     }
 }
 
-/// Of logarithms, over whole powers of ten.
+/// An axis of logarithms, over whole powers of ten.
 fn axis(label: &'static str, values: impl Iterator<Item = f64>) -> Axis {
     let (min, max) = chart::extent(values.map(f64::log10)).unwrap_or((0.0, 1.0));
     let (min, max) = (min.floor(), max.ceil().max(min.floor() + 1.0));

@@ -63,7 +63,7 @@ fn dot(row: &[f32; ROW_STRIDE], query: &[f32; ROW_STRIDE]) -> f32 {
     row.iter().zip(query).map(|(r, q)| r * q).sum()
 }
 
-/// A row with minus half its square in the last place, as the scoring shaders read it.
+/// A row with minus half its square as its last number, as the scoring shaders read it.
 pub fn with_half_square(row: &[f32; ROW_STRIDE]) -> [f32; ROW_STRIDE] {
     let mut row = *row;
     let square: f64 = row[..ROW_STRIDE - 1]

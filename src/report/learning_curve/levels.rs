@@ -31,7 +31,7 @@ pub fn draw_lines(
 
 /// The numbers of levels that begin so close together that they share a label.
 pub struct Numbers {
-    /// The first number, and where its line lies, in pixels from the left.
+    /// The first number, and the position of its line, in pixels from the left.
     first: (usize, f64),
     last: (usize, f64),
 }

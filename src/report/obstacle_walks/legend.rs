@@ -1,4 +1,4 @@
-//! What the symbols in the panels stand for.
+//! The legend of the symbols in the panels.
 
 use super::symbols::{OBSTACLE, SEEN, WAY, draw_arrow, draw_outline, draw_rectangle};
 use crate::report::ReportError;
