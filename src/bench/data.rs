@@ -1,67 +1,50 @@
-//! Databases of any size out of one recording session: beyond its own length mirrored and
-//! time-warped copies of its clips.
+//! Databases of any size out of one: beyond its own length by mirrored and time-warped copies of its
+//! clips.
 
 use crate::motion::RATE;
 use crate::motion::clip::Clip;
 use crate::motion::database::Database;
-use crate::motion::import::{ImportOptions, import};
 use crate::motion::mirror::mirror;
 use crate::motion::normalise::Weights;
-use crate::motion::synthetic;
 use crate::motion::resample::resample;
-use crate::motion::roles::Roles;
-use crate::train::data::SYNTHETIC_SEED;
-use anyhow::{Result, ensure};
+use crate::train::data;
+use anyhow::Result;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Clips at 30 Hz.
-pub struct Motion {
+/// The motion that is measured on.
+pub struct BenchData {
+    pub database: Arc<Database>,
     clips: Vec<Clip>,
-    roles: Roles,
-    whole: Arc<Database>,
 }
 
-/// How much faster a copy is than another, in alternation with slower.
+/// Difference in speed from one warped copy to the next, in alternation faster and slower.
 const WARP: f32 = 0.03;
 
-impl Motion {
-    /// A BVH file or a folder of them; without a path the synthetic performer's motion.
+impl BenchData {
+    /// Loads a database file, a BVH file or a folder of them; without a path the synthetic performer's
+    /// motion.
+    ///
+    /// # Errors
+    /// It cannot be read.
     pub fn load(path: Option<&Path>) -> Result<Self> {
-        let (clips, roles) = match path {
-            None => synthetic::perform(SYNTHETIC_SEED, synthetic::MINUTES),
-            Some(path) => {
-                let bvh = path
-                    .extension()
-                    .is_some_and(|end| end.eq_ignore_ascii_case("bvh"));
-                ensure!(
-                    path.is_dir() || bvh || !path.exists(),
-                    "{} is no folder and no .bvh file: larger databases are made from recordings, which a database \
-                     file no longer has",
-                    path.display()
-                );
-                let import = import(path, &ImportOptions::default())?;
-                (import.clips, import.roles)
-            }
-        };
-        Ok(Motion {
-            whole: Arc::new(Database::build(&clips, roles, Weights::PAPER)?),
-            clips,
-            roles,
+        let (database, _) = data::load(path, Weights::PAPER)?;
+        let clips = (0..database.clips.len()).map(|clip| database.recording(clip));
+        Ok(BenchData {
+            clips: clips.collect(),
+            database: Arc::new(database),
         })
     }
 
-    /// As it is.
-    pub fn whole(&self) -> Arc<Database> {
-        self.whole.clone()
-    }
-
-    /// With so many candidates, or a few less where a mirrored copy is not to be had.
-    pub fn of(&self, candidates: usize) -> Result<Database> {
+    /// A database with so many candidates, or a few less where a clip cannot be mirrored.
+    ///
+    /// # Errors
+    /// No clip is long enough.
+    pub fn with_candidates(&self, candidates: usize) -> Result<Database> {
         let mut clips = Vec::new();
         let mut frames = 0;
-        // Every clip loses a second of candidates, and what no copy can add is not waited for.
-        for copy in 0..4 * candidates.div_ceil(self.whole.candidates.len()) {
+        // Every clip loses a second of candidates, and missing copies are not waited for.
+        for copy in 0..4 * candidates.div_ceil(self.database.candidates.len()) {
             for clip in &self.clips {
                 if frames >= candidates {
                     break;
@@ -71,7 +54,8 @@ impl Motion {
                 clips.push(clip);
             }
         }
-        let mut database = Database::build(&clips, self.roles, Weights::PAPER)?;
+        let Database { roles, weights, .. } = *self.database;
+        let mut database = Database::build(&clips, roles, weights)?;
         database.candidates.truncate(candidates);
         Ok(database)
     }

@@ -1,9 +1,11 @@
 //! The networks of both tasks' preset `fast`: the policy's mean for many observations at once, and
 //! learning from a whole rollout.
 
-use super::clock::{TOO_LONG_S, Work, seconds};
+use super::clock::{MAX_CALL_S, seconds};
 use super::training::{config, held};
-use super::{Bench, ENVS, Item, Record};
+use super::recorder::{Recorder, Workload};
+use super::roofline::ItemCost;
+use super::stage::{BenchContext, ENVS};
 use crate::motion::features::TRAJECTORY_DIM;
 use crate::nn::network::Shape;
 use crate::rl::rollout::Rollout;
@@ -13,15 +15,15 @@ use crate::train::config::{Config, Kind, Preset};
 use anyhow::{Context, Result};
 use burn::tensor::{Device, Distribution, Tensor};
 
-pub fn measure(bench: &Bench, record: &mut Record) -> Result<()> {
+pub fn measure(bench: &BenchContext, record: &mut Recorder) -> Result<()> {
     for (stage, measure) in [("network", forward as Stage), ("update", update)] {
-        if !bench.plan.wants(stage) {
+        if !bench.plan.selects(stage) {
             continue;
         }
         for kind in [Kind::Plane, Kind::Obstacles] {
             let mut last = 0.0;
             for envs in ENVS {
-                if 4.0 * last > TOO_LONG_S || !held(bench, kind, envs) {
+                if 4.0 * last > MAX_CALL_S || !held(bench, kind, envs) {
                     break;
                 }
                 last = measure(bench, kind, envs, record)?;
@@ -32,77 +34,77 @@ pub fn measure(bench: &Bench, record: &mut Record) -> Result<()> {
 }
 
 /// Measures with so many environments and returns the seconds it takes once.
-type Stage = fn(&Bench, Kind, usize, &mut Record) -> Result<f64>;
+type Stage = fn(&BenchContext, Kind, usize, &mut Recorder) -> Result<f64>;
 
-fn forward(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Result<f64> {
-    let Bench { place, ceiling, .. } = *bench;
+fn forward(bench: &BenchContext, kind: Kind, envs: usize, record: &mut Recorder) -> Result<f64> {
+    let BenchContext { on, roofline, .. } = *bench;
     let config = Config::preset(kind, Preset::Fast);
     let width = config.task.width();
     (record.tell)(&format!(
         "{}: network, {} of {envs}",
-        place.name(),
+        on.name(),
         config.task.name()
     ));
     let shape = Shape::new(&config.ppo.network, width).context("a network")?;
-    let time = place.inside(|| -> Result<f64> {
-        let tensors = place.device.tensors();
-        let policy = Learner::new(&config.ppo, width, &place.device, 1)?.policy();
+    let time = on.install(|| -> Result<f64> {
+        let tensors = on.device.tensors();
+        let policy = Learner::new(&config.ppo, width, &on.device, 1)?.policy();
         let observation = Tensor::<2>::ones([envs, width], &tensors);
-        seconds(place, || {
+        seconds(on, || {
             let _ = policy.mean(observation.clone());
             Ok(())
         })
     })?;
-    let item = Item {
+    let workload = Workload {
         stage: "network",
         variant: config.task.name(),
         frames: 0,
         envs,
         batch: envs,
         bytes: Some(4 * shape.parameters()),
-        work: Work {
+        cost: ItemCost {
             bytes: 0.0,
             operations: shape.actor_operations() as f64,
         },
     };
-    record.add(place, ceiling, item, time);
+    record.add(on, roofline, workload, time);
     Ok(time)
 }
 
 /// An update from a rollout of noise.
-fn update(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Result<f64> {
-    let Bench { place, ceiling, .. } = *bench;
+fn update(bench: &BenchContext, kind: Kind, envs: usize, record: &mut Recorder) -> Result<f64> {
+    let BenchContext { on, roofline, .. } = *bench;
     let config = config(kind, envs);
     let (ppo, width) = (&config.ppo, config.task.width());
     (record.tell)(&format!(
         "{}: update, {} of {envs}",
-        place.name(),
+        on.name(),
         config.task.name()
     ));
     let shape = Shape::new(&ppo.network, width).context("a network")?;
-    let time = place.inside(|| -> Result<f64> {
-        let tensors = place.device.tensors();
-        let mut learner = Learner::new(ppo, width, &place.device, 1)?;
+    let time = on.install(|| -> Result<f64> {
+        let tensors = on.device.tensors();
+        let mut learner = Learner::new(ppo, width, &on.device, 1)?;
         let rollout = noise(ppo.batch(), width, &tensors);
-        seconds(place, || {
+        seconds(on, || {
             read(learner.update(&rollout, ppo))?;
             Ok(())
         })
     })?;
-    let item = Item {
+    let workload = Workload {
         stage: "update",
         variant: config.task.name(),
         frames: 0,
         envs,
         batch: ppo.batch(),
         bytes: Some(4 * 3 * shape.parameters()),
-        work: Work {
+        cost: ItemCost {
             bytes: 0.0,
             // Forward, and twice as much back, in every pass.
             operations: (3 * ppo.epochs * shape.operations()) as f64,
         },
     };
-    record.add(place, ceiling, item, time);
+    record.add(on, roofline, workload, time);
     Ok(time)
 }
 

@@ -1,163 +1,69 @@
-//! `footwork bench`: what each device makes of each stage, beside what it could do at most.
+//! `footwork bench`: the speed of each stage on each device, beside what the device could do at most.
 //!
-//! [`bench_device`] is where something runs, [`clock`] how it is timed, [`roofline`] what the place can do at most;
-//! [`data`] are databases of any size; [`search`], [`world`], [`learn`] and [`training`] are the stages.
+//! [`bench_device`] is where a stage runs, [`clock`] how it is timed, [`roofline`] what the device can do
+//! at most ([`peak_rates`]); [`data`] are databases of any size. [`search`], [`environment`], [`learn`],
+//! [`training`] and [`drawing`] are the stages.
 
-mod roofline;
+mod bench_device;
 mod clock;
 mod data;
+mod drawing;
+mod environment;
 mod learn;
-mod bench_device;
+mod peak_rates;
+mod plan;
+mod recorder;
+mod roofline;
 mod search;
+mod stage;
 mod training;
-mod world;
 
-use crate::gpu::Choice;
-use crate::motion::database::Database;
+use crate::matching::MotionMatcher;
 use anyhow::{Result, ensure};
-use roofline::Ceiling;
-use clock::Work;
-use bench_device::Place;
-use serde::Serialize;
-use std::path::Path;
+use bench_device::BenchDevice;
+pub use plan::{BenchPlan, STAGES};
+pub use recorder::Measurement;
+use recorder::Recorder;
+use stage::BenchContext;
 use std::sync::Arc;
 
-/// One measurement.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
-    /// One of [`STAGES`].
-    pub stage: &'static str,
-    /// What of it, like `indexed`.
-    pub variant: String,
-    /// The adapter's name, or `cpu`.
-    pub device: String,
-    /// Threads of the CPU; lavapipe has its own, one a core.
-    pub threads: usize,
-    /// Candidates of the database.
-    pub frames: usize,
-    /// Environments; 0 where there are none.
-    pub envs: usize,
-    /// Items of one call: queries, environments, samples or steps.
-    pub batch: usize,
-    /// Items a second.
-    pub per_s: f64,
-    /// Memory that the stage needs for its arrays, where that is known.
-    pub bytes: Option<usize>,
-    /// Share of what the device's memory or arithmetic allows at most, where the work of an item is
-    /// a fixed number of bytes or operations.
-    pub roofline: Option<f64>,
-}
-
-/// Names for `--filter`.
-pub const STAGES: [&str; 9] = [
-    "memory",
-    "arithmetic",
-    "search",
-    "rasterise",
-    "hits",
-    "environment",
-    "network",
-    "update",
-    "training",
-];
-
-/// What to measure.
-pub struct Plan<'a> {
-    /// Stages with this in their name.
-    pub filter: &'a str,
-    /// `Auto`: every device there is.
-    pub device: Choice,
-    pub data: Option<&'a Path>,
-}
-
-impl Plan<'_> {
-    fn wants(&self, stage: &str) -> bool {
-        stage.contains(self.filter)
-    }
-}
-
-/// Rows so far; each is also told to whoever waits.
-struct Record<'a> {
-    rows: Vec<Row>,
-    tell: &'a dyn Fn(&str),
-}
-
-/// What a row says beside its place and its speed.
-struct Item<'a> {
-    stage: &'static str,
-    variant: &'a str,
-    frames: usize,
-    envs: usize,
-    batch: usize,
-    bytes: Option<usize>,
-    work: Work,
-}
-
-impl Record<'_> {
-    fn add(&mut self, place: &Place, ceiling: &Ceiling, item: Item, seconds: f64) {
-        let per_s = item.batch as f64 / seconds;
-        self.rows.push(Row {
-            stage: item.stage,
-            variant: item.variant.to_string(),
-            device: place.device_name(),
-            threads: place.threads,
-            frames: item.frames,
-            envs: item.envs,
-            batch: item.batch,
-            per_s,
-            bytes: item.bytes,
-            roofline: ceiling.share(item.work, per_s),
-        });
-    }
-}
-
-/// Measures what `plan` asks for, on one device after another; `tell` hears what is under way.
+/// Measures what `plan` selects, on one device after another; `tell` hears what is under way.
 ///
 /// # Errors
-/// The data cannot be read, there is no such device or it was lost, or nothing is called like the filter.
-pub fn run(plan: &Plan, tell: &dyn Fn(&str)) -> Result<Vec<Row>> {
+/// The data cannot be read, there is no such device or it was lost, or no stage matches the filter.
+pub fn run(plan: &BenchPlan, tell: &dyn Fn(&str)) -> Result<Vec<Measurement>> {
     ensure!(
-        STAGES.iter().any(|stage| plan.wants(stage)),
+        STAGES.iter().any(|stage| plan.selects(stage)),
         "no stage is called like {}: there are {}",
         plan.filter,
         STAGES.join(", ")
     );
-    let places = bench_device::all(plan.device)?;
-    let motion = data::Motion::load(plan.data)?;
-    let mut record = Record {
-        rows: Vec::new(),
+    let devices = BenchDevice::all(plan.device)?;
+    let data = data::BenchData::load(plan.data)?;
+    let mut record = Recorder {
+        measurements: Vec::new(),
         tell,
     };
-    let ceilings = places
+    let rooflines = devices
         .iter()
-        .map(|place| roofline::measure(plan, place, &mut record))
+        .map(|on| peak_rates::measure(plan, on, &mut record))
         .collect::<Result<Vec<_>>>()?;
-    let places: Vec<_> = places.iter().zip(&ceilings).collect();
-    if plan.wants("search") {
-        search::measure(&motion, &places, &mut record)?;
+    let devices: Vec<_> = devices.iter().zip(&rooflines).collect();
+    if plan.selects("search") {
+        search::measure(&data, &devices, &mut record)?;
     }
-    let database: Arc<Database> = motion.whole();
-    for (place, ceiling) in places {
-        let bench = Bench {
+    let matcher = Arc::new(MotionMatcher::new(data.database));
+    for (on, roofline) in devices {
+        let bench = BenchContext {
             plan,
-            place,
-            ceiling,
-            database: &database,
+            on,
+            roofline,
+            matcher: &matcher,
         };
-        world::measure(&bench, &mut record)?;
+        environment::measure(&bench, &mut record)?;
         learn::measure(&bench, &mut record)?;
         training::measure(&bench, &mut record)?;
+        drawing::measure(&bench, &mut record)?;
     }
-    Ok(record.rows)
+    Ok(record.measurements)
 }
-
-/// What the stages behind the search share.
-struct Bench<'a> {
-    plan: &'a Plan<'a>,
-    place: &'a Place,
-    ceiling: &'a Ceiling,
-    database: &'a Arc<Database>,
-}
-
-/// Environments of a batch.
-const ENVS: [usize; 5] = [256, 1024, 4096, 16_384, 65_536];

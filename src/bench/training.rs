@@ -1,7 +1,9 @@
-//! Whole training, an update at a time: worlds, networks, learning and the one read-back.
+//! Whole training, an update at a time: environments, networks, learning and the one read-back.
 
-use super::clock::{TOO_LONG_S, Work, seconds};
-use super::{Bench, ENVS, Item, Record};
+use super::clock::{MAX_CALL_S, seconds};
+use super::recorder::{Recorder, Workload};
+use super::roofline::ItemCost;
+use super::stage::{BenchContext, ENVS};
 use crate::motion::features::TRAJECTORY_DIM;
 use crate::rl::rollout;
 use crate::rl::ppo::update::Learner;
@@ -10,14 +12,14 @@ use crate::train::config::{Config, Kind, Preset};
 use crate::env::locomotion::{Batch, Setup};
 use anyhow::Result;
 
-pub fn measure(bench: &Bench, record: &mut Record) -> Result<()> {
-    if !bench.plan.wants("training") {
+pub fn measure(bench: &BenchContext, record: &mut Recorder) -> Result<()> {
+    if !bench.plan.selects("training") {
         return Ok(());
     }
     for kind in [Kind::Plane, Kind::Obstacles] {
         let mut last = 0.0;
         for envs in ENVS {
-            if 4.0 * last > TOO_LONG_S || !held(bench, kind, envs) {
+            if 4.0 * last > MAX_CALL_S || !held(bench, kind, envs) {
                 break;
             }
             last = update(bench, kind, envs, record)?;
@@ -35,19 +37,19 @@ pub(super) fn config(kind: Kind, envs: usize) -> Config {
 }
 
 /// Whether the device reaches a rollout's observations, packed with what else a sample has.
-pub(super) fn held(bench: &Bench, kind: Kind, envs: usize) -> bool {
+pub(super) fn held(bench: &BenchContext, kind: Kind, envs: usize) -> bool {
     let config = config(kind, envs);
     let numbers = config.ppo.batch() * (config.task.width() + 2 * TRAJECTORY_DIM + 4);
-    bench.place.device.holds("samples", numbers).is_ok()
+    bench.on.device.holds("samples", numbers).is_ok()
 }
 
-fn update(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Result<f64> {
-    let Bench { place, ceiling, .. } = *bench;
+fn update(bench: &BenchContext, kind: Kind, envs: usize, record: &mut Recorder) -> Result<f64> {
+    let BenchContext { on, roofline, .. } = *bench;
     let config = config(kind, envs);
     let (task, ppo) = (config.task, &config.ppo);
     (record.tell)(&format!(
         "{}: training, {} of {envs}",
-        place.name(),
+        on.name(),
         task.name()
     ));
     let setup = Setup {
@@ -57,26 +59,26 @@ fn update(bench: &Bench, kind: Kind, envs: usize, record: &mut Record) -> Result
         seed: 1,
         level: 0,
     };
-    let time = place.inside(|| -> Result<f64> {
-        let mut batch = Batch::open(&place.device, bench.database, &setup);
-        let mut learner = Learner::new(ppo, task.width(), &place.device, 1)?;
-        seconds(place, || {
+    let time = on.install(|| -> Result<f64> {
+        let mut batch = Batch::open(&on.device, bench.matcher, &setup);
+        let mut learner = Learner::new(ppo, task.width(), &on.device, 1)?;
+        seconds(on, || {
             let policy = learner.policy();
             let rollout =
-                rollout::collect(&mut batch, &policy, &learner.scale, ppo, &place.device)?;
+                rollout::collect(&mut batch, &policy, &learner.scale, ppo, &on.device)?;
             tensors::read(learner.update(&rollout, ppo))?;
             Ok(())
         })
     })?;
-    let item = Item {
+    let workload = Workload {
         stage: "training",
         variant: task.name(),
-        frames: bench.database.candidates.len(),
+        frames: bench.matcher.database.candidates.len(),
         envs,
         batch: ppo.batch(),
         bytes: None,
-        work: Work::default(),
+        cost: ItemCost::default(),
     };
-    record.add(place, ceiling, item, time);
+    record.add(on, roofline, workload, time);
     Ok(time)
 }

@@ -1,9 +1,9 @@
 //! `footwork bench`.
 
 use super::Usage;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
-use footwork::bench::{Plan, Row, STAGES, run};
+use footwork::bench::{BenchPlan, Measurement, STAGES, run};
 use footwork::gpu::Choice;
 use footwork::report::scaling::{self, Curve, ScalingPanel};
 use footwork::report::table::table;
@@ -14,8 +14,8 @@ use std::time::Duration;
 
 #[derive(Args)]
 pub struct Bench {
-    /// Only stages with this in their name: memory, arithmetic, search, rasterise, hits, environment,
-    /// network, update, training
+    /// Only stages with this in their name: memory, arithmetic, search, rasterize_maps, hits, environment,
+    /// network, update, training, drawing
     #[arg(
         long,
         value_name = "NAME",
@@ -26,15 +26,16 @@ pub struct Bench {
     /// Where to measure [default: one core, all cores, lavapipe and a real GPU, as far as there]
     #[arg(long, value_enum, default_value = "auto", hide_default_value = true)]
     device: Choice,
-    /// A folder of BVH files or one BVH file [default: synthetic motion]
+    /// A database file, a BVH file or a folder of them; larger databases are made of mirrored and
+    /// time-warped copies of its clips [default: synthetic motion]
     #[arg(long, value_name = "DIR|FILE")]
     data: Option<PathBuf>,
-    /// Write all figures to this file too
+    /// Also write all figures to this file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// The picture of the scaling curves
-    #[arg(long, value_name = "FILE", default_value = "bench.png")]
-    picture: PathBuf,
+    /// Also draw the scaling curves of search and training
+    #[arg(long, value_name = "PNG")]
+    plot: Option<PathBuf>,
 }
 
 impl Bench {
@@ -47,13 +48,13 @@ impl Bench {
             );
             return Err(Usage(why).into());
         }
-        for file in self.json.iter().chain([&self.picture]) {
+        for file in self.json.iter().chain(&self.plot) {
             writable(file)?;
         }
         let line = ProgressBar::new_spinner()
             .with_style(ProgressStyle::with_template("{elapsed} {wide_msg}")?);
         line.enable_steady_tick(Duration::from_secs(1));
-        let plan = Plan {
+        let plan = BenchPlan {
             filter: &self.filter,
             device: self.device,
             data: self.data.as_deref(),
@@ -66,10 +67,14 @@ impl Bench {
             footwork::container::write_whole(file, text.as_bytes())
                 .with_context(|| format!("cannot write {}", file.display()))?;
         }
-        let panels = panels(&rows);
-        if !panels.is_empty() {
-            scaling::draw(&self.picture, &panels)?;
-            println!("see {}", self.picture.display());
+        if let Some(file) = &self.plot {
+            let panels = panels(&rows);
+            ensure!(
+                !panels.is_empty(),
+                "nothing to draw: there are curves of the stages search and training alone"
+            );
+            scaling::draw(file, &panels)?;
+            println!("see {}", file.display());
         }
         for line in advice(&rows) {
             println!("{line}");
@@ -78,7 +83,7 @@ impl Bench {
     }
 }
 
-/// Before minutes of measuring are lost.
+/// Refuses impossible files before minutes of measuring are lost.
 fn writable(file: &Path) -> Result<()> {
     let folder = match file.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -89,10 +94,10 @@ fn writable(file: &Path) -> Result<()> {
         (_, false) => "its folder must exist",
         _ => return Ok(()),
     };
-    Err(Usage(format!("{} is no place for a file: {why}", file.display())).into())
+    Err(Usage(format!("{} cannot be written: {why}", file.display())).into())
 }
 
-fn shown(rows: &[Row]) -> String {
+fn shown(rows: &[Measurement]) -> String {
     let headers = [
         "stage",
         "variant",
@@ -116,7 +121,7 @@ fn shown(rows: &[Row]) -> String {
         vec![
             row.stage.to_string(),
             row.variant.clone(),
-            place(row),
+            device(row),
             size(row.frames),
             size(row.envs),
             size(row.batch),
@@ -131,7 +136,7 @@ fn shown(rows: &[Row]) -> String {
     table(&headers, &cells.collect::<Vec<_>>())
 }
 
-fn place(row: &Row) -> String {
+fn device(row: &Measurement) -> String {
     match (row.device.as_str(), row.threads) {
         ("cpu", 1) => "cpu, one core".to_string(),
         ("cpu", threads) => format!("cpu, {threads} cores"),
@@ -157,18 +162,18 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// Curves of what has sizes: the search by frames, training by environments.
-fn panels(rows: &[Row]) -> Vec<ScalingPanel> {
-    let by_frames = |row: &Row| row.frames;
-    let by_envs = |row: &Row| row.envs;
-    let panel = |title: &str, x, y, stage, variant, size: &dyn Fn(&Row) -> usize| {
+/// Curves of the stages that are measured in several sizes: the search by frames, training by environments.
+fn panels(rows: &[Measurement]) -> Vec<ScalingPanel> {
+    let by_frames = |row: &Measurement| row.frames;
+    let by_envs = |row: &Measurement| row.envs;
+    let panel = |title: &str, x, y, stage, variant, size: &dyn Fn(&Measurement) -> usize| {
         let mut curves: Vec<Curve> = Vec::new();
         for row in rows
             .iter()
             .filter(|row| row.stage == stage && row.variant == variant)
         {
             let point = (size(row) as f64, row.per_s);
-            let name = place(row);
+            let name = device(row);
             match curves.iter_mut().find(|curve| curve.name == name) {
                 Some(curve) => curve.points.push(point),
                 None => curves.push(Curve {
@@ -224,8 +229,8 @@ fn panels(rows: &[Row]) -> Vec<ScalingPanel> {
         .collect()
 }
 
-/// Which device is the quickest, by task.
-fn advice(rows: &[Row]) -> Vec<String> {
+/// The quickest device for each task.
+fn advice(rows: &[Measurement]) -> Vec<String> {
     let best = |task: &str| {
         let of = rows
             .iter()
@@ -234,7 +239,7 @@ fn advice(rows: &[Row]) -> Vec<String> {
     };
     let say = |task: &str| {
         let row = best(task)?;
-        let option = match place(row).as_str() {
+        let option = match device(row).as_str() {
             "lavapipe" => "lavapipe",
             _ if row.device == "cpu" => "cpu",
             _ => "gpu",
@@ -243,7 +248,7 @@ fn advice(rows: &[Row]) -> Vec<String> {
             "use `train {task} --device {option}`: {} steps/s with {} environments on {}",
             speed(row.per_s),
             row.envs,
-            place(row)
+            device(row)
         ))
     };
     ["plane", "obstacles"].into_iter().filter_map(say).collect()

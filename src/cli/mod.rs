@@ -9,11 +9,13 @@ mod render;
 mod run;
 mod sim;
 mod train;
+mod usage;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use footwork::motion::error::MotionError;
 use footwork::train::config::ConfigError;
+pub use usage::Usage;
 use footwork::train::task::Unsupported;
 
 /// Trains character controllers: motion capture in, a policy that moves a full-body character out.
@@ -44,11 +46,6 @@ enum Command {
     #[command(subcommand)]
     Data(data::Data),
 }
-
-/// Something the user asked for that cannot be meant.
-#[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct Usage(pub String);
 
 pub fn run() -> Result<()> {
     match Cli::parse().command {

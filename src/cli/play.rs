@@ -5,7 +5,7 @@ use anyhow::Result;
 use clap::Args;
 use footwork::gpu::Gpu;
 use footwork::motion::normalise::Weights;
-use footwork::viewer::app::Choice;
+use footwork::viewer::app::PolicyEntry;
 use footwork::viewer::window;
 use footwork::playback::player::Style;
 use footwork::train::controller::Controller;
@@ -43,18 +43,18 @@ impl Play {
         paths.retain(|other| other.file_name() != run.path.file_name());
         paths.push(run.path.clone());
         let run = Arc::new(run);
-        let choices = paths.into_iter().map(|path| {
+        let policies = paths.into_iter().map(|path| {
             let name = path.file_stem().unwrap_or_default();
             let (name, run) = (name.to_string_lossy().into(), run.clone());
             let load = move || Ok(Box::new(run.checkpoint(&path)?.policy) as Box<dyn Controller>);
-            Choice {
+            PolicyEntry {
                 name,
                 load: Box::new(load),
             }
         });
         let title = format!("footwork: {}", run.folder.path().display());
         let context = PlaythroughContext::new(matcher, task, Style::BEST);
-        window::play(&Gpu::drawing()?, &title, context, choices.collect())
+        window::play(&Gpu::drawing()?, &title, context, policies.collect())
     }
 
     fn motion(&self) -> Result<()> {

@@ -41,7 +41,8 @@ impl MotionMatcher {
     /// # Errors
     /// The file cannot be written.
     pub fn save_index(&self, path: &Path) -> Result<(), StoreError> {
-        self.index.save(&index_path(path), self.database.fingerprint)
+        self.index
+            .save(&index_path(path), self.database.fingerprint)
     }
 }
 

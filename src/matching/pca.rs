@@ -22,7 +22,8 @@ impl PrincipalAxes {
 
     /// Coordinates of a row's trajectory along the axes.
     pub fn project(&self, row: &[f32; ROW_STRIDE]) -> [f32; TRAJECTORY_DIM] {
-        let trajectory: [f64; TRAJECTORY_DIM] = std::array::from_fn(|i| f64::from(row[POSE_DIM + i]));
+        let trajectory: [f64; TRAJECTORY_DIM] =
+            std::array::from_fn(|i| f64::from(row[POSE_DIM + i]));
         self.0.map(|axis| {
             let mut sum = 0.0;
             for (a, t) in axis.iter().zip(trajectory) {
@@ -95,8 +96,8 @@ fn rotate(row: &mut [f64; TRAJECTORY_DIM], p: usize, q: usize, cos: f64, sin: f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::features::FEATURE_DIM;
     use crate::kernels::rng::{gaussian, random4};
+    use crate::motion::features::FEATURE_DIM;
 
     #[test]
     fn axes_are_orthonormal_and_carry_falling_variance_without_covariance() {

@@ -8,7 +8,7 @@
 use super::quantised_boxes::{
     GridPoint, LANES, OutOfGrid, POSE_PAIRS, QuantisationGrid, QuantisedBoxes,
 };
-use super::tree::{self, LeafRows, KdTree};
+use super::tree::{self, KdTree, LeafRows};
 use crate::motion::features::{POSE_DIM, ROW_STRIDE};
 use multiversion::multiversion;
 use rayon::prelude::*;

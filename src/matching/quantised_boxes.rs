@@ -183,7 +183,10 @@ mod tests {
         (low, high)
     }
 
-    fn grid(low: &[[f32; LANES]; D], high: &[[f32; LANES]; D]) -> QuantisationGrid<D, { D.div_ceil(2) }> {
+    fn grid(
+        low: &[[f32; LANES]; D],
+        high: &[[f32; LANES]; D],
+    ) -> QuantisationGrid<D, { D.div_ceil(2) }> {
         QuantisationGrid::enclosing(
             &low.map(|lanes| lanes.into_iter().fold(f32::INFINITY, f32::min)),
             &high.map(|lanes| lanes.into_iter().fold(f32::NEG_INFINITY, f32::max)),
@@ -242,7 +245,8 @@ mod tests {
         let quantised = grid.quantise_boxes(&point, &point);
         for (at, square) in [(0.25, 0.0), (0.75, 0.25 * D as f32), (f32::NAN, 0.0)] {
             let at = [at; D];
-            let found = grid.squared_distances(&quantised, &grid.quantise(&at), &grid.out_of_grid(&at));
+            let found =
+                grid.squared_distances(&quantised, &grid.quantise(&at), &grid.out_of_grid(&at));
             assert!(found.iter().all(|f| (f - square).abs() < 1e-6), "{found:?}");
         }
     }

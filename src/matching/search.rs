@@ -47,7 +47,10 @@ impl Index {
         let threads = rayon::current_num_threads();
         let enough = (self.tree.bytes() / FETCHED_BYTES).clamp(TASK_QUERIES[0], TASK_QUERIES[1]);
         let rounds = queries.len().div_ceil(threads * enough).max(1);
-        let task = queries.len().div_ceil(threads * rounds).max(TASK_QUERIES[0]);
+        let task = queries
+            .len()
+            .div_ceil(threads * rounds)
+            .max(TASK_QUERIES[0]);
         frames
             .par_chunks(task)
             .zip(queries.par_chunks(task))
@@ -230,7 +233,12 @@ fn group_bounds(index: &Index, region: usize, state: &QueryState) -> [f32; LANES
 
 /// Lower bounds of the squared distances to the leaves of a group, with the `codes` of their poses.
 #[inline(always)]
-fn leaf_bounds(index: &Index, group: usize, state: &QueryState, codes: [u8; LANES]) -> [f32; LANES] {
+fn leaf_bounds(
+    index: &Index,
+    group: usize,
+    state: &QueryState,
+    codes: [u8; LANES],
+) -> [f32; LANES] {
     let (trajectory, pose) = &state.quantised;
     let (grid, boxes) = (&index.tree.grid, &index.tree.leaf_boxes[group]);
     // Apart, for almost all are on the grid, and that is less to do.
@@ -358,7 +366,13 @@ impl Steps {
 
 /// Offers the rows of those leaves of a group that are `within` the limit.
 #[inline(always)]
-fn compare(index: &Index, group: usize, state: &mut QueryState, bounds: &[f32; LANES], within: LaneMask) {
+fn compare(
+    index: &Index,
+    group: usize,
+    state: &mut QueryState,
+    bounds: &[f32; LANES],
+    within: LaneMask,
+) {
     for lane in within {
         // The best may have come nearer since.
         if bounds[lane] > state.best.limit {

@@ -48,12 +48,19 @@ type SortKey = [f32; FEATURE_DIM];
 /// One box: its lower and its upper corner.
 type TrajectoryBox = [[f32; TRAJECTORY_DIM]; 2];
 /// The box around no point.
-const EMPTY: TrajectoryBox = [[f32::INFINITY; TRAJECTORY_DIM], [f32::NEG_INFINITY; TRAJECTORY_DIM]];
+const EMPTY: TrajectoryBox = [
+    [f32::INFINITY; TRAJECTORY_DIM],
+    [f32::NEG_INFINITY; TRAJECTORY_DIM],
+];
 
 impl KdTree {
     /// The tree of `rows`, of which there must be at least one; `order` is that of an earlier tree of the
     /// same rows, to save the sorting.
-    pub fn build(rows: &[[f32; ROW_STRIDE]], axes: &PrincipalAxes, order: Option<Vec<u32>>) -> Self {
+    pub fn build(
+        rows: &[[f32; ROW_STRIDE]],
+        axes: &PrincipalAxes,
+        order: Option<Vec<u32>>,
+    ) -> Self {
         let key = |row: &[f32; ROW_STRIDE]| -> SortKey {
             let projected = axes.project(row);
             std::array::from_fn(|d| match d {
@@ -89,7 +96,9 @@ impl KdTree {
         KdTree {
             leaves,
             ids,
-            leaf_boxes: boxes.map(|of| grid.quantise_boxes(&of.low, &of.high)).collect(),
+            leaf_boxes: boxes
+                .map(|of| grid.quantise_boxes(&of.low, &of.high))
+                .collect(),
             grid,
             group_boxes: groups.chunks(LANES).map(pack).collect(),
             region_boxes: regions.chunks(LANES).map(pack).collect(),
@@ -161,10 +170,7 @@ fn parents(boxes: &[TrajectoryBox]) -> Vec<TrajectoryBox> {
 }
 
 /// The box around two boxes.
-fn union(
-    [low, high]: TrajectoryBox,
-    [other_low, other_high]: TrajectoryBox,
-) -> TrajectoryBox {
+fn union([low, high]: TrajectoryBox, [other_low, other_high]: TrajectoryBox) -> TrajectoryBox {
     [
         std::array::from_fn(|axis| low[axis].min(other_low[axis])),
         std::array::from_fn(|axis| high[axis].max(other_high[axis])),

@@ -37,7 +37,7 @@ impl Recording {
         &self.rotations[frame * joints..(frame + 1) * joints]
     }
 
-    /// The frames `keep` (which must lie inside the recording) as a clip in metres, still at
+    /// The frames `keep` (which must be inside the recording) as a clip in metres, still at
     /// the recording's own rate. `unit_m` is metres per file unit.
     pub fn into_clip(self, name: &str, unit_m: f32, keep: std::ops::Range<usize>) -> Clip {
         let joints = self.skeleton.joints();

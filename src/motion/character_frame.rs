@@ -1,7 +1,7 @@
 //! The character frame on the ground: x is left, z is forward.
 //!
 //! `heading` is the unit forward direction in the world, `[x, z]`. Everything is metres. The same
-//! two functions stand in `shaders/shared/math.wgsl`.
+//! two functions are in `shaders/shared/math.wgsl`.
 
 /// A ground vector from the character frame to the world.
 pub fn to_world(local: [f32; 2], heading: [f32; 2]) -> [f32; 2] {

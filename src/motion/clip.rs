@@ -21,10 +21,12 @@ pub struct Clip {
 }
 
 impl Clip {
+    /// Number of frames.
     pub fn frames(&self) -> usize {
         self.positions.len()
     }
 
+    /// Length, s.
     pub fn seconds(&self) -> f32 {
         self.frames() as f32 / self.rate
     }

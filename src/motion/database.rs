@@ -1,8 +1,8 @@
-//! Everything motion matching and playback need of a set of clips, in plain arrays.
+//! A set of clips as motion matching and playback need it, in plain arrays.
 
+use super::character_frame::to_local;
 use super::clip::Clip;
 use super::features::{FEATURE_DIM, FRAMES_PER_STEP, MIN_FUTURE_FRAMES, ROW_STRIDE, extract};
-use super::character_frame::to_local;
 use super::normalise::{Normalisation, Weights};
 use super::roles::Roles;
 use super::skeleton::Skeleton;
@@ -11,7 +11,7 @@ use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// A clip's place in the database.
+/// The frames of a clip in the database.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClipRecord {
     pub name: String,
@@ -50,11 +50,11 @@ pub struct Database {
     pub hips: Vec<Vec3>,
     /// Local rotations, `[frame][joint]`.
     pub rotations: Vec<Quat>,
-    /// Frames that can be matched, ascending. Search answers with places in this list.
+    /// Frames that can be matched, ascending. The search returns indices into this list.
     pub candidates: Vec<u32>,
-    /// One a candidate.
+    /// Root motion of each candidate.
     pub motion: Vec<RootMotion>,
-    /// Changes with anything that changes what a policy meets: features and root motion.
+    /// Checksum of all that a policy depends on: features and root motion.
     pub fingerprint: u32,
 }
 
@@ -87,7 +87,10 @@ impl Database {
     /// If no clip is longer than the 30 future frames a candidate needs.
     pub fn build(clips: &[Clip], roles: Roles, weights: Weights) -> Result<Self, NothingToMatch> {
         use rayon::prelude::*;
-        let clips: Vec<&Clip> = clips.iter().filter(|clip| clip.frames() > MIN_FUTURE_FRAMES).collect();
+        let clips: Vec<&Clip> = clips
+            .iter()
+            .filter(|clip| clip.frames() > MIN_FUTURE_FRAMES)
+            .collect();
         let Some(first) = clips.first() else {
             return Err(NothingToMatch);
         };
@@ -176,10 +179,27 @@ impl Database {
         &self.clips[after - 1]
     }
 
+    /// A clip as it was recorded, at 30 Hz; all clips have the skeleton of the first.
+    pub fn recording(&self, clip: usize) -> Clip {
+        let ClipRecord { first, frames, .. } = self.clips[clip];
+        let joints = self.skeleton.joints();
+        Clip {
+            name: self.clips[clip].name.clone(),
+            skeleton: self.skeleton.clone(),
+            rate: super::RATE,
+            positions: self.hips[first..][..frames].to_vec(),
+            rotations: self.rotations[first * joints..][..frames * joints].to_vec(),
+            source: self.clips[clip].source.clone(),
+            licence: self.clips[clip].licence.clone(),
+        }
+    }
+
+    /// Frames of all clips.
     pub fn frames(&self) -> usize {
         self.features.len()
     }
 
+    /// Length of all clips together, minutes.
     pub fn minutes(&self) -> f32 {
         self.frames() as f32 / super::RATE / 60.0
     }

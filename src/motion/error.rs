@@ -1,4 +1,4 @@
-//! What can go wrong between a file and a motion.
+//! Errors between a file and a motion.
 
 use crate::container::StoreError;
 use std::path::{Path, PathBuf};
@@ -83,11 +83,14 @@ pub enum MotionError {
 
     /// An error of a function that knows no files, met while working on this one.
     #[error("{}: {error}", .path.display())]
-    In { path: PathBuf, error: Box<MotionError> },
+    In {
+        path: PathBuf,
+        error: Box<MotionError>,
+    },
 }
 
 impl MotionError {
-    /// The same error, saying which file it was met in.
+    /// This error, with the file in which it was met.
     pub fn within(self, path: &Path) -> MotionError {
         MotionError::In {
             path: path.to_path_buf(),

@@ -1,7 +1,7 @@
-//! What motion matching compares: 15 numbers of pose and 12 of future trajectory a frame.
+//! The features that motion matching compares: 15 numbers of pose and 12 of future trajectory a frame.
 
-use super::clip::Clip;
 use super::character_frame::to_local;
+use super::clip::Clip;
 use super::roles::Roles;
 use super::smooth::savitzky_golay;
 use glam::Vec3;

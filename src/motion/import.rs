@@ -36,7 +36,7 @@ pub struct ImportedMotion {
     pub notes: Vec<String>,
 }
 
-/// Imports one BVH file, or every BVH file that lies directly in a folder.
+/// Imports one BVH file, or every BVH file directly in a folder.
 ///
 /// A `manifest.csv` in the folder or the one above gives units, T-poses, licence and source of
 /// the files it names; for others units and T-poses are found from the motion.

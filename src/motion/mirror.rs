@@ -1,4 +1,4 @@
-//! The same motion seen in a mirror: left and right exchanged.
+//! Mirrored motion: left and right exchanged.
 //!
 //! The world is reflected over x = 0. A reflected rotation would turn joints inside out, so
 //! each joint's own axes are reflected too, over the plane that maps the left bones on the
@@ -127,7 +127,7 @@ fn reflect(mut v: Vec3, axis: usize) -> Vec3 {
     v
 }
 
-/// A local rotation seen through axes reflected on both sides: its own axis turns around.
+/// A local rotation seen through axes reflected on both sides: its own axis is reversed.
 fn reflect_turn(rotation: Quat, axis: usize) -> Quat {
     let mut q = rotation.to_array();
     for other in (0..3).filter(|&other| other != axis) {
@@ -138,7 +138,7 @@ fn reflect_turn(rotation: Quat, axis: usize) -> Quat {
 
 /// The root's rotation takes joint axes (reflected over `axis`) to the world (over x).
 fn reflect_root(rotation: Quat, axis: usize) -> Quat {
-    // Two reflections over different axes are half a turn about the third.
+    // Two reflections over different axes are half a rotation about the third.
     let half_turn = match axis {
         0 => Quat::IDENTITY,
         1 => Quat::from_xyzw(0.0, 0.0, 1.0, 0.0),

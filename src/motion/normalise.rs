@@ -80,11 +80,7 @@ impl Normalisation {
         }
         let scale = std::array::from_fn(|i| {
             let std_dev = (variance[group(i)] / members[group(i)]).sqrt();
-            let std_dev = if std_dev > 1e-6 {
-                std_dev as f32
-            } else {
-                1.0
-            };
+            let std_dev = if std_dev > 1e-6 { std_dev as f32 } else { 1.0 };
             weights.of(group(i)) / std_dev
         });
         Normalisation {

@@ -215,7 +215,7 @@ fn by_name(role: usize, names: &[String]) -> Option<usize> {
 
 /// The roles that a file names, in the order of [`ROLES`].
 fn given(text: &str, skeleton: &Skeleton) -> Result<[Option<usize>; 9], String> {
-    // The parser's message shows the line and points at the place.
+    // The parser's message shows the line and points at the position.
     let table: toml::Table = text
         .parse()
         .map_err(|error: toml::de::Error| error.to_string().trim().to_string())?;

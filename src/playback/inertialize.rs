@@ -48,8 +48,9 @@ mod tests {
         };
         // Wide steps: differences of differences leave f32 few digits.
         let (step, frames) = (0.1, 12.0);
-        let velocity =
-            |age: f32| (offset.at(age + step, frames) - offset.at(age - step, frames)) / (2.0 * step);
+        let velocity = |age: f32| {
+            (offset.at(age + step, frames) - offset.at(age - step, frames)) / (2.0 * step)
+        };
         let acceleration = |age: f32| (velocity(age + step) - velocity(age - step)) / (2.0 * step);
         assert_eq!(offset.at(0.0, frames), offset.value);
         assert!((velocity(0.0) - offset.velocity).length() < 1e-3);

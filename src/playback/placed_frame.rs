@@ -1,9 +1,9 @@
 //! A database frame, placed in the world.
 
 use super::pose::CharacterPose;
+use crate::motion::character_frame::{to_local, to_world};
 use crate::motion::database::Database;
 use crate::motion::features::TRAJECTORY_OFFSETS;
-use crate::motion::character_frame::{to_local, to_world};
 use glam::{Quat, Vec3};
 
 /// A database frame and its character frame in the world: everything that motion

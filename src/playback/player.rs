@@ -3,8 +3,8 @@
 use super::contact::{FootContact, SolePoints, contacts};
 use super::foot_lock::FootLock;
 use super::leg::{LegJoints, legs};
-use super::pose::CharacterPose;
 use super::placed_frame::PlacedFrame;
+use super::pose::CharacterPose;
 use super::spring::Spring;
 use super::stitch::{Stitch, Stitching};
 use super::two_bone_ik;
@@ -121,11 +121,16 @@ impl Player {
             targets[side] = foot + held + Vec3::Y * sunk.max(0.0);
             if contact != FootContact::Air {
                 let length = skeleton.reach(leg.hip, leg.foot);
-                let leg_shortfall = two_bone_ik::shortfall(positions[leg.hip], foot, targets[side], length);
+                let leg_shortfall =
+                    two_bone_ik::shortfall(positions[leg.hip], foot, targets[side], length);
                 shortfall = shortfall.max(leg_shortfall.unwrap_or(0.0).min(LOWEST));
             }
         }
-        let rate = if shortfall > self.hips.position { DOWN } else { RISE };
+        let rate = if shortfall > self.hips.position {
+            DOWN
+        } else {
+            RISE
+        };
         pose.root.y -= self.hips.follow(shortfall, rate);
         for (leg, target) in self.feet.legs.iter().zip(targets) {
             two_bone_ik::solve(skeleton, pose, leg, target);

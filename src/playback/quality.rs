@@ -1,8 +1,8 @@
 //! Motion quality in numbers: foot skate, penetration, jumps, smoothness.
 
 use super::contact::{FootContact, SolePoints};
-use super::player::{Feet, Player, Style};
 use super::placed_frame::PlacedFrame;
+use super::player::{Feet, Player, Style};
 use crate::motion::RATE;
 use crate::motion::database::Database;
 use glam::Vec3;
@@ -32,7 +32,7 @@ pub struct Quality {
 
 /// Quality under each style, and of the recordings themselves.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct QualityComparison {
     /// Shown frames, and how many of them follow a jump.
     pub frames: usize,
     pub jumps: usize,
@@ -45,7 +45,7 @@ pub struct Comparison {
 
 /// Evaluates episodes over one database: chains of placed frames, each beginning with the frame before
 /// the first that counts.
-pub fn compare(database: &Arc<Database>, episodes: &[Vec<PlacedFrame>]) -> Comparison {
+pub fn compare(database: &Arc<Database>, episodes: &[Vec<PlacedFrame>]) -> QualityComparison {
     use super::stitch::Stitching::{Inertialize, Linear};
     let feet = Arc::new(Feet::of(database));
     let style = |stitching, foot_locking| Style {
@@ -60,7 +60,7 @@ pub fn compare(database: &Arc<Database>, episodes: &[Vec<PlacedFrame>]) -> Compa
         sums
     };
     let raw = evaluated(Style::RAW, true);
-    Comparison {
+    QualityComparison {
         frames: raw.frames,
         jumps: raw.jumps,
         recorded: evaluated(Style::RAW, false).quality(),
@@ -80,9 +80,15 @@ struct Frame {
     jumped: bool,
 }
 
-fn play(database: &Arc<Database>, feet: &Arc<Feet>, style: Style, episode: &[PlacedFrame]) -> Vec<Frame> {
+fn play(
+    database: &Arc<Database>,
+    feet: &Arc<Feet>,
+    style: Style,
+    episode: &[PlacedFrame],
+) -> Vec<Frame> {
     let mut player = Player::new(database.clone(), feet.clone(), style, episode[0]);
-    episode.windows(2)
+    episode
+        .windows(2)
         .map(|pair| {
             let pose = player.next(pair[1]);
             let soles = feet.soles(database, &pose);

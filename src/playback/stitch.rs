@@ -1,8 +1,8 @@
 //! Stitching: hides the jump from one frame of the database to another.
 
 use super::inertialize::InertializedOffset;
-use super::pose::CharacterPose;
 use super::placed_frame::PlacedFrame;
+use super::pose::CharacterPose;
 use crate::motion::database::Database;
 use glam::{Quat, Vec3};
 

@@ -6,7 +6,7 @@ use plotters::style::RGBColor;
 
 use super::ReportError;
 use super::canvas::{Anchor, Canvas, Pixel, paint, text_width};
-use super::chart::{self, PlotArea, Plot};
+use super::chart::{self, Plot, PlotArea};
 use super::learning_curve::{self, PANELS, Panel, Point};
 
 /// One way to train, tried with several seeds.
@@ -290,7 +290,10 @@ fn names(methods: &[Method], panels: &[Vec<Curve>]) -> Vec<Name> {
 /// Left end and row of each name.
 fn place_names(names: &[Name]) -> Result<Vec<(f64, usize)>, ReportError> {
     let width = |name: &Name| Ok(SWATCH + text_width(&name.text, chart::NORMAL)?);
-    let widths: Vec<f64> = names.iter().map(width).collect::<Result<_, ReportError>>()?;
+    let widths: Vec<f64> = names
+        .iter()
+        .map(width)
+        .collect::<Result<_, ReportError>>()?;
     Ok(chart::flow(&widths, LEGEND_GAP, WIDTH - LEFT - RIGHT))
 }
 

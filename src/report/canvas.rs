@@ -17,7 +17,7 @@ const FINE: u32 = 3;
 /// A point of the finished picture: pixels to the right, pixels down.
 pub type Pixel = (f64, f64);
 
-/// Where the point given for a text lies in it.
+/// The point of a text that its given position is that of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// Left end, half height.
@@ -56,9 +56,14 @@ pub fn paint(
 
 impl Canvas<'_> {
     /// A line through `points` with round joints.
-    pub fn line(&mut self, points: &[Pixel], colour: RGBColor, width: f64) -> Result<(), ReportError> {
+    pub fn line(
+        &mut self,
+        points: &[Pixel],
+        colour: RGBColor,
+        width: f64,
+    ) -> Result<(), ReportError> {
         let pen = pen(colour, 1.0, width);
-        // One piece at a time: a whole path is filled by the even-odd rule, which tears
+        // One segment at a time: a whole path is filled by the even-odd rule, which tears
         // holes wherever a noisy line crosses itself.
         for ends in points.windows(2) {
             let (from, to) = (grid(ends[0]), grid(ends[1]));
@@ -96,7 +101,7 @@ impl Canvas<'_> {
         Ok(())
     }
 
-    /// A filled circle; `opacity` 1 hides what lies below.
+    /// A filled circle; `opacity` 1 hides what is below.
     pub fn disc(
         &mut self,
         centre: Pixel,

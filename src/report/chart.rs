@@ -96,7 +96,7 @@ pub struct Plot {
 }
 
 impl Plot {
-    /// Where a pair of values lies in the picture.
+    /// The pixel of a pair of values.
     pub fn at(&self, x: f64, y: f64) -> Pixel {
         let PlotArea {
             left,
@@ -110,7 +110,7 @@ impl Plot {
         )
     }
 
-    /// Whether a pair of values lies within the axes.
+    /// Whether a pair of values is within the axes.
     pub fn holds(&self, x: f64, y: f64) -> bool {
         (self.x.min..=self.x.max).contains(&x) && (self.y.min..=self.y.max).contains(&y)
     }

@@ -1,4 +1,4 @@
-//! What the motions of a database cover: how fast they go, how sharply they turn and
+//! Coverage of a database: how fast they go, how sharply they turn and
 //! in which directions they move.
 
 use std::path::Path;
@@ -7,7 +7,7 @@ use plotters::style::RGBColor;
 
 use super::ReportError;
 use super::canvas::{Anchor, Canvas, paint};
-use super::chart::{self, Axis, PlotArea, Plot};
+use super::chart::{self, Axis, Plot, PlotArea};
 
 /// One value for each frame. Frames with a value that is not finite are left out.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +50,7 @@ const COLOURS: [RGBColor; 9] = [
 ];
 
 /// Draws how the minutes are spread over speed and turning rate, and over local
-/// velocity, as a PNG. The outermost thousandth of the frames may lie outside the plots.
+/// velocity, as a PNG. The outermost thousandth of the frames may be outside the plots.
 ///
 /// # Errors
 ///
@@ -137,7 +137,7 @@ fn reach(values: impl Iterator<Item = f64>, least: f64) -> f64 {
         .map_or(least, |&size| (1.05 * size).max(least))
 }
 
-/// Minutes in each cell of a plot; cell (column, row) lies at `row * CELLS + column`.
+/// Minutes in each cell of a plot; cell (column, row) is at `row * CELLS + column`.
 struct Density {
     minutes: Vec<f64>,
 }

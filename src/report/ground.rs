@@ -5,7 +5,7 @@ use plotters::style::RGBColor;
 
 use super::ReportError;
 use super::canvas::{Canvas, Pixel};
-use super::chart::{self, Axis, PlotArea, Plot};
+use super::chart::{self, Axis, Plot, PlotArea};
 
 /// Distance from the target at which it counts as reached, in metres.
 pub const TARGET_RADIUS: f64 = 0.5;
@@ -23,7 +23,7 @@ pub fn plot(frame: PlotArea, centre: (f64, f64), half: f64) -> Plot {
     }
 }
 
-/// Where x and z, in metres, lie in the picture.
+/// The pixel of x and z, in metres.
 pub fn place(plot: &Plot, [x, z]: [f32; 2]) -> Pixel {
     plot.at(f64::from(x), -f64::from(z))
 }
@@ -43,7 +43,7 @@ pub fn finite(point: &[f32; 2]) -> bool {
     point.iter().all(|value| value.is_finite())
 }
 
-/// Whether a pixel lies within the frame.
+/// Whether a pixel is within the frame.
 pub fn inside(frame: &PlotArea, (x, y): Pixel) -> bool {
     (frame.left..=frame.right).contains(&x) && (frame.top..=frame.bottom).contains(&y)
 }
@@ -71,7 +71,7 @@ pub fn line(
     canvas.line(&piece, colour, width)
 }
 
-/// The part of a straight line that lies within the frame.
+/// The part of a straight line within the frame.
 fn cut(frame: &PlotArea, from: Pixel, to: Pixel) -> Option<[Pixel; 2]> {
     let (x, y) = (to.0 - from.0, to.1 - from.1);
     let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
@@ -126,7 +126,7 @@ pub fn circle(
     Ok(())
 }
 
-/// Where a walk began.
+/// The start of an episode.
 pub fn start(canvas: &mut Canvas<'_>, at: Pixel) -> Result<(), ReportError> {
     ring(canvas, at, chart::INK)
 }

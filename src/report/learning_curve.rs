@@ -7,7 +7,7 @@ use plotters::style::RGBColor;
 
 use super::ReportError;
 use super::canvas::{Anchor, Canvas, Pixel, paint, text_width};
-use super::chart::{self, Axis, PlotArea, Plot};
+use super::chart::{self, Axis, Plot, PlotArea};
 
 mod levels;
 
@@ -101,9 +101,14 @@ pub(super) const PANELS: [Panel; 3] = [
 /// # Errors
 ///
 /// If the picture cannot be drawn or written.
-pub fn draw(path: &Path, points: &[Point], marks: &[Mark], levels: &[Level]) -> Result<(), ReportError> {
+pub fn draw(
+    path: &Path,
+    points: &[Point],
+    marks: &[Mark],
+    levels: &[Level],
+) -> Result<(), ReportError> {
     let end = rounded_end(points.iter().map(|point| point.steps));
-    let numbers = levels::place_numbers(levels, end)?;
+    let numbers = levels::place_numbers(levels, end, [LEFT, WIDTH - RIGHT])?;
     let labels = place_labels(marks, end, usize::from(!numbers.is_empty()))?;
     let rows = labels.iter().map(|label| label.row + 1).max();
     let rows = rows.unwrap_or(usize::from(!numbers.is_empty()));
@@ -122,7 +127,7 @@ pub fn draw(path: &Path, points: &[Point], marks: &[Mark], levels: &[Level]) -> 
                 draw_time(canvas, &plot, points)?;
             }
         }
-        levels::draw_numbers(canvas, &numbers, top - 0.5 * LABEL_ROW)?;
+        levels::draw_numbers(canvas, &numbers, (LEFT, top - 0.5 * LABEL_ROW))?;
         labels.iter().try_for_each(|label| {
             let at = (label.middle, top - (label.row as f64 + 0.5) * LABEL_ROW);
             let colour = chart::colour(label.mark.colour);
@@ -245,10 +250,10 @@ fn draw_marks(canvas: &mut Canvas<'_>, plot: &Plot, marks: &[Mark]) -> Result<()
     Ok(())
 }
 
-/// A mark's label and its place above the panels.
+/// A mark's label and its position above the panels.
 struct Label<'a> {
     mark: &'a Mark,
-    /// Where its middle lies, in pixels from the left.
+    /// Its middle, in pixels from the left.
     middle: f64,
     /// 0 is the row next to the panels.
     row: usize,

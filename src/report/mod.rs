@@ -1,4 +1,4 @@
-//! What a run leaves behind for people: pictures, TensorBoard events and tables.
+//! Output of a run for people: pictures, TensorBoard events and tables.
 //!
 //! The pictures share one look. [`png_file`] writes a PNG whole or not at all,
 //! [`canvas`] draws smooth lines and text into one, [`chart`] adds the colours and
@@ -12,6 +12,7 @@ pub mod ablation;
 pub mod canvas;
 pub mod chart;
 pub mod coverage;
+mod error;
 pub mod events;
 pub mod font;
 pub mod ground;
@@ -22,13 +23,4 @@ pub mod scaling;
 pub mod table;
 pub mod trajectories;
 
-/// Why a picture could not be made.
-#[derive(Debug, thiserror::Error)]
-pub enum ReportError {
-    /// The drawing itself failed, before any file was touched.
-    #[error("cannot draw the picture: {0}")]
-    Draw(String),
-    /// The finished picture could not be written; the message names the file.
-    #[error(transparent)]
-    Write(#[from] std::io::Error),
-}
+pub use error::ReportError;

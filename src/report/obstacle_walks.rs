@@ -1,67 +1,21 @@
-//! Walks among moving obstacles, seen from above, and the obstacle maps that the policy
-//! saw on the way, laid out as the paper's figure 2.
+//! Episodes among moving obstacles, seen from above, and the obstacle maps that the policy
+//! observed on the way, laid out as the paper's figure 2.
 
 use plotters::style::RGBColor;
 
 use super::ReportError;
 use super::canvas::{Anchor, Canvas, Pixel, paint};
-use super::chart::{self, PlotArea, Plot};
+use super::chart::{self, Plot, PlotArea};
 use super::ground;
 
+mod episode;
 mod legend;
 mod maps;
+mod symbols;
 
-/// Cells along each side of a map.
-pub const CELLS: usize = 16;
-
-/// What a policy sees of the obstacles within 6 m by 6 m: `map[row][column]` is 0 if that cell
-/// is free, 255 if it is blocked. Rows count forwards from the farthest behind the character (z from
-/// −3 m to 3 m in its frame), columns from its right to its left (x from −3 m to 3 m); the
-/// character stands in the middle.
-pub type Map = [[u8; CELLS]; CELLS];
-
-/// An axis-aligned box that moves: world x and z, in metres.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Obstacle {
-    /// Its centre when the episode began.
-    pub start: [f32; 2],
-    /// Its centre when the episode ended.
-    pub end: [f32; 2],
-    /// Half its size along x and z.
-    pub half: [f32; 2],
-}
-
-/// How a walk ended.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum End {
-    /// At the target.
-    Reached,
-    /// In an obstacle.
-    Collided,
-    /// Not yet.
-    #[default]
-    UnderWay,
-}
-
-/// One walk to one target.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Episode {
-    /// What the panel shows, such as "level 9".
-    pub title: String,
-    pub obstacles: Vec<Obstacle>,
-    /// The root's ground position at the start and after every step: world x and z, in
-    /// metres.
-    pub points: Vec<[f32; 2]>,
-    /// World x and z of the target, in metres.
-    pub target: [f32; 2],
-    pub end: End,
-    /// Index into `points` of where the maps were seen.
-    pub seen: usize,
-    /// The character's forward direction then: world x and z, of any length.
-    pub heading: [f32; 2],
-    /// What it saw then, and what it had seen a step before.
-    pub maps: [Map; 2],
-}
+use episode::seconds;
+pub use episode::{CELLS, End, Episode, Map, Obstacle};
+use symbols::{OBSTACLE, SEEN, WAY, draw_arrow, draw_rectangle, turned};
 
 /// Half of what a panel shows, in metres: the square in which obstacles begin, and as
 /// much of them as may reach out of it.
@@ -80,14 +34,10 @@ const BOTTOM: f64 = 76.0;
 const BESIDE: f64 = 28.0;
 const EPISODE: f64 = SIDE + BESIDE + maps::SIDE;
 
-const OBSTACLE: RGBColor = RGBColor(0x64, 0x74, 0x8b);
-const WAY: RGBColor = RGBColor(0x94, 0xa0, 0xb0);
-const SEEN: RGBColor = chart::PALETTE[3];
-
 /// Draws the episodes, each with its maps beside it, as a PNG. `step_s` is the time from
 /// one point to the next and from one map to the other, in seconds.
 ///
-/// Positions are drawn relative to the walk's start, in world axes: the viewer looks
+/// Positions are drawn relative to the start, in world axes: the viewer looks
 /// down, so z grows downwards and a turn to the left looks like one. The maps are in the
 /// character's frame, forward up and its left on the left.
 ///
@@ -147,7 +97,7 @@ fn draw_episode(
         plot.label_y(canvas)?;
     }
     draw_heading(canvas, &plot, episode, step_s)?;
-    maps::draw(canvas, episode, step_s, (left + SIDE + BESIDE, top))
+    maps::draw(canvas, episode, step_s, (left + SIDE + BESIDE, top + SIDE))
 }
 
 fn colour(end: End) -> RGBColor {
@@ -158,7 +108,7 @@ fn colour(end: End) -> RGBColor {
     })
 }
 
-/// A panel, and what its whole walk shares.
+/// A panel, and what all of its episode shares.
 struct Scene<'a> {
     plot: &'a Plot,
     /// The world x and z that the panel is centred on.
@@ -186,7 +136,11 @@ impl Scene<'_> {
     }
 
     /// All boxes below all their ways.
-    fn draw_obstacles(&self, canvas: &mut Canvas<'_>, episode: &Episode) -> Result<(), ReportError> {
+    fn draw_obstacles(
+        &self,
+        canvas: &mut Canvas<'_>,
+        episode: &Episode,
+    ) -> Result<(), ReportError> {
         for obstacle in &episode.obstacles {
             self.draw_box(canvas, obstacle, OBSTACLE)?;
         }
@@ -275,7 +229,7 @@ impl Scene<'_> {
     }
 }
 
-/// The obstacle that ended the walk: the one nearest to its end.
+/// The obstacle that ended the episode: the one nearest to its end.
 fn hit(episode: &Episode) -> Option<&Obstacle> {
     let end = episode.points.last()?;
     let gap = |obstacle: &&Obstacle| {
@@ -301,50 +255,6 @@ fn direction([x, z]: [f32; 2]) -> Pixel {
     }
 }
 
-/// The point so many pixels ahead and to the right of someone who stands `at` a point
-/// and looks `forward`.
-fn turned(at: Pixel, forward: Pixel, ahead: f64, right: f64) -> Pixel {
-    let (x, y) = forward;
-    (at.0 + ahead * x - right * y, at.1 + ahead * y + right * x)
-}
-
-/// An obstacle between two opposite corners.
-fn draw_rectangle(
-    canvas: &mut Canvas<'_>,
-    corner: Pixel,
-    opposite: Pixel,
-    colour: RGBColor,
-) -> Result<(), ReportError> {
-    canvas.rectangle(corner, opposite, chart::tint(colour, 0.2))?;
-    draw_outline(canvas, corner, opposite, chart::tint(colour, 0.6), 1.2)
-}
-
-fn draw_outline(
-    canvas: &mut Canvas<'_>,
-    corner: Pixel,
-    opposite: Pixel,
-    colour: RGBColor,
-    width: f64,
-) -> Result<(), ReportError> {
-    let others = [(opposite.0, corner.1), (corner.0, opposite.1)];
-    let line = [corner, others[0], opposite, others[1], corner];
-    canvas.line(&line, colour, width)
-}
-
-/// The character, seen from above.
-fn draw_arrow(canvas: &mut Canvas<'_>, at: Pixel, forward: Pixel) -> Result<(), ReportError> {
-    let corner = |ahead, right| turned(at, forward, ahead, right);
-    let arrow = [
-        corner(14.0, 0.0),
-        corner(-9.0, 9.0),
-        corner(-4.0, 0.0),
-        corner(-9.0, -9.0),
-        corner(14.0, 0.0),
-    ];
-    canvas.line(&arrow, chart::tint(SEEN, 0.0), 4.0)?;
-    canvas.polygon(&arrow, SEEN, 1.0)
-}
-
 fn draw_end(canvas: &mut Canvas<'_>, at: Pixel, end: End) -> Result<(), ReportError> {
     match end {
         End::Reached => canvas.disc(at, 8.0, colour(end), 1.0),
@@ -353,7 +263,7 @@ fn draw_end(canvas: &mut Canvas<'_>, at: Pixel, end: End) -> Result<(), ReportEr
     }
 }
 
-/// The title, and how the walk ended.
+/// The title, and how the episode ended.
 fn draw_heading(
     canvas: &mut Canvas<'_>,
     plot: &Plot,
@@ -373,8 +283,4 @@ fn draw_heading(
     draw_end(canvas, (left + 10.0, top - 28.0), episode.end)?;
     let (at, colour) = ((left + 30.0, top - 28.0), colour(episode.end));
     canvas.text(&text, at, Anchor::Left, chart::NORMAL, colour)
-}
-
-fn seconds(steps: usize, step_s: f32) -> String {
-    format!("{:.1} s", steps as f32 * step_s)
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::ReportError;
 use super::canvas::{Anchor, Canvas, paint, text_width};
-use super::chart::{self, Axis, PlotArea, Plot};
+use super::chart::{self, Axis, Plot, PlotArea};
 
 /// One plot.
 pub struct ScalingPanel {
@@ -72,7 +72,12 @@ pub fn draw(path: &Path, panels: &[ScalingPanel]) -> Result<(), ReportError> {
 }
 
 impl ScalingPanel {
-    fn draw(&self, canvas: &mut Canvas<'_>, at: (f64, f64), names: &[&str]) -> Result<(), ReportError> {
+    fn draw(
+        &self,
+        canvas: &mut Canvas<'_>,
+        at: (f64, f64),
+        names: &[&str],
+    ) -> Result<(), ReportError> {
         let points = || self.curves.iter().flat_map(|curve| &curve.points);
         let plot = Plot {
             frame: PlotArea {
@@ -103,7 +108,7 @@ impl ScalingPanel {
     }
 }
 
-/// Of logarithms, over whole powers of ten.
+/// An axis of logarithms, over whole powers of ten.
 fn axis(label: &'static str, values: impl Iterator<Item = f64>) -> Axis {
     let (min, max) = chart::extent(values.map(f64::log10)).unwrap_or((0.0, 1.0));
     let (min, max) = (min.floor(), max.ceil().max(min.floor() + 1.0));

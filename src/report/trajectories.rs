@@ -3,10 +3,10 @@
 
 use super::ReportError;
 use super::canvas::{Anchor, Canvas, Pixel, paint, text_width};
-use super::chart::{self, PlotArea, Plot};
+use super::chart::{self, Plot, PlotArea};
 use super::ground;
 
-/// One walk to one target.
+/// One episode, on the way to one target.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Path {
     /// The root's ground positions in order of time: world x and z, in metres. Points
@@ -14,8 +14,8 @@ pub struct Path {
     pub points: Vec<[f32; 2]>,
     /// World x and z of the target, in metres.
     pub target: [f32; 2],
-    /// Whether the walk came within the target's circle. If not, the circle is dashed
-    /// and a cross marks where the walk ended.
+    /// Whether the character came within the target's circle. If not, the circle is dashed
+    /// and a cross marks where the episode ended.
     pub reached: bool,
     /// A few letters beside the target, such as the time to it: "2.4 s".
     pub label: String,
@@ -23,7 +23,7 @@ pub struct Path {
     pub colour: usize,
 }
 
-/// The walks of one panel.
+/// The episodes of one panel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Group {
     /// What the panel shows, such as "20k steps".
@@ -39,7 +39,7 @@ const GAP: f64 = 28.0;
 const TITLE: f64 = 56.0;
 const BOTTOM: f64 = 76.0;
 
-/// Draws the groups side by side, to one scale, as a PNG; a walk is cut where it leaves
+/// Draws the groups side by side, to one scale, as a PNG; a trajectory is cut where it leaves
 /// the panel. The viewer looks down, so z grows downwards and a turn to the left looks
 /// like one.
 ///
@@ -82,7 +82,7 @@ struct Square {
 
 impl Square {
     /// The smallest square that shows every start and target, with room for labels and turns.
-    /// Lost walks leave it: shown whole, the longest would make all others too small to see.
+    /// Lost characters leave it: shown whole, the longest would make all others too small to see.
     fn around(groups: &[Group]) -> Self {
         const BESIDE: f64 = 2.5;
         const ABOVE: f64 = 2.5;

@@ -1,7 +1,7 @@
 //! The tables and the JSON of `footwork eval` for motion-matching tasks.
 
 use super::evaluate::LocomotionReport;
-use crate::playback::quality::{Comparison, Quality};
+use crate::playback::quality::{Quality, QualityComparison};
 use crate::report::table::table;
 
 /// A table of the levels.
@@ -93,7 +93,7 @@ pub fn baseline_json(baseline: &[(f32, LocomotionReport)]) -> serde_json::Result
 }
 
 /// A table of the motion as recorded and with each remedy.
-pub fn motion_quality(motion: &Comparison) -> String {
+pub fn motion_quality(motion: &QualityComparison) -> String {
     let styles: [(&str, &Quality); 5] = [
         ("as recorded, between jumps", &motion.recorded),
         ("no stitching", &motion.raw),

@@ -7,7 +7,7 @@ use glam::{Mat4, Vec2, Vec3};
 /// Height of the picture as an angle, rad.
 const FIELD: f32 = 0.62;
 const NEAR: f32 = 0.05;
-/// What lies behind the haze is not drawn: so much, and so many distances.
+/// Behind the haze nothing is drawn: so much, and so many distances.
 const FAR: [f32; 2] = [600.0, 20.0];
 /// Pitches that keep the eye above the ground and off the pole, rad.
 pub const PITCH: [f32; 2] = [0.02, 1.55];
@@ -61,10 +61,10 @@ impl Camera {
         self.distance = (self.distance * factor).clamp(DISTANCE[0], DISTANCE[1]);
     }
 
-    /// Goes a share of the way to look at a point on the ground.
-    pub fn follow(&mut self, at: [f32; 2], share: f32) {
+    /// Goes a fraction of the way to look at a point on the ground.
+    pub fn follow(&mut self, at: [f32; 2], fraction: f32) {
         let there = Vec3::new(at[0], self.focus.y, at[1]);
-        self.focus += share * (there - self.focus);
+        self.focus += fraction * (there - self.focus);
     }
 
     /// Moves the focus over the ground: to the right of the picture and away from the eye, m.
@@ -73,7 +73,7 @@ impl Camera {
         self.focus += Vec3::new(cos * right - sin * away, 0.0, -sin * right - cos * away);
     }
 
-    /// The ground point under a place of the picture, from (-1, -1) at the lower left to (1, 1).
+    /// The ground point under a point of the picture, from (-1, -1) at the lower left to (1, 1).
     /// `None` above the horizon.
     pub fn ground(&self, place: Vec2, aspect: f32) -> Option<[f32; 2]> {
         let back = self.clip(aspect).inverse();

@@ -1,4 +1,4 @@
-//! A skeleton's flesh: capsules between its joints, thick where a person is.
+//! A skeleton drawn as capsules between its joints, thick where a person is.
 
 use super::scene::{Colour, Scene};
 use crate::motion::roles::Roles;
@@ -41,7 +41,7 @@ pub struct BoneRow {
     colour: [f32; 4],
 }
 
-/// All capsules of a body.
+/// All capsules of a character.
 #[derive(Clone, Debug)]
 pub struct CapsuleRig {
     pub bones: Vec<Bone>,
@@ -61,6 +61,7 @@ enum Part {
 }
 
 impl CapsuleRig {
+    /// The rig of a skeleton, whose limbs the roles name.
     pub fn of(skeleton: &Skeleton, roles: &Roles) -> CapsuleRig {
         let scale = skeleton.reach(roles.left_hip, roles.left_foot) / LEG;
         let anatomy = Anatomy {
@@ -85,19 +86,19 @@ impl CapsuleRig {
         points
     }
 
-    /// The bones as a shader reads them: ends by their place in [`CapsuleRig::points`].
+    /// The bones as a shader reads them: ends by their index in [`CapsuleRig::points`].
     pub fn table(&self) -> Vec<BoneRow> {
         let points = self.points();
-        let place = |spot: Spot| {
-            let place = points
+        let index = |spot: Spot| {
+            let index = points
                 .iter()
                 .position(|&point| point == (spot.joint, spot.offset));
-            place.unwrap_or_default() as u32
+            index.unwrap_or_default() as u32
         };
         let row = |bone: &Bone| {
             let ([a, b], [r, g, bl]) = (bone.ends, bone.colour);
             BoneRow {
-                ends: [place(a), place(b)],
+                ends: [index(a), index(b)],
                 radii: [a.radius, b.radius],
                 colour: [r, g, bl, 1.0],
             }
@@ -105,11 +106,11 @@ impl CapsuleRig {
         self.bones.iter().map(row).collect()
     }
 
-    /// Adds a body to a scene.
+    /// Adds a character to a scene.
     pub fn draw(&self, scene: &mut Scene, skeleton: &Skeleton, pose: &CharacterPose) {
         let (positions, rotations) = pose.world(skeleton);
         for bone in &self.bones {
-            let [a, b] = bone.ends.map(|spot| spot.place(&positions, &rotations));
+            let [a, b] = bone.ends.map(|spot| spot.position(&positions, &rotations));
             let [from, to] = bone.ends.map(|spot| spot.radius);
             scene.capsule(a, from, b, to, bone.colour);
         }
@@ -117,7 +118,7 @@ impl CapsuleRig {
 }
 
 impl Spot {
-    fn place(&self, positions: &[Vec3], rotations: &[Quat]) -> Vec3 {
+    fn position(&self, positions: &[Vec3], rotations: &[Quat]) -> Vec3 {
         positions[self.joint] + rotations[self.joint] * self.offset
     }
 }
@@ -143,7 +144,7 @@ impl Anatomy<'_> {
         bones
     }
 
-    /// Of leaf bones; some recordings have one of no length.
+    /// Tips of leaf bones; some recordings have one of no length.
     fn tips(&self) -> impl Iterator<Item = &(usize, Vec3)> {
         let ends = self.skeleton.ends.iter();
         ends.filter(|(_, offset)| offset.length() > 0.01 * self.scale)
@@ -153,7 +154,7 @@ impl Anatomy<'_> {
     fn bone(&self, joint: usize, from: usize, offset: Vec3) -> Option<Bone> {
         let tip = usize::from(joint == from);
         let radii = match self.part(joint) {
-            // The trunk fills in what lies between the hips and the limbs.
+            // The trunk fills the space between the hips and the limbs.
             Part::Leg(0) | Part::Arm(0) => return None,
             Part::Leg(depth) => match depth + tip {
                 1 => [0.085, 0.058],
@@ -187,7 +188,7 @@ impl Anatomy<'_> {
         ))
     }
 
-    /// Where a skeleton ends at the head's joint: what lies above, on from the neck.
+    /// The skull, on from the neck, where a skeleton ends at the head's joint.
     fn skull(&self, joint: usize) -> Option<Bone> {
         let way = self.skeleton.offsets[joint].normalize_or_zero();
         let head = self.part(joint) == Part::Neck && self.is_leaf(joint) && way != Vec3::ZERO;

@@ -6,9 +6,9 @@ use crate::physics::model::{Geom, Model, Shape};
 use crate::physics::pose::Pose;
 use glam::{Quat, Vec3};
 
-/// What a ghost's colours are mixed with, by what share.
+/// A ghost's colours are mixed with this one, by this fraction.
 const GHOST: (Colour, f32) = ([0.80, 0.84, 0.88], 0.75);
-/// Of a turned box, m.
+/// Radius of the edges of a rotated box, m.
 const ROUNDING: f32 = 0.02;
 /// Most rods beside each other: a box that is larger has gaps.
 const RODS: f32 = 64.0;
@@ -47,10 +47,10 @@ fn colour(model: &Model, geom: &Geom, look: Look) -> Colour {
         _ if body.contains("right") => RIGHT,
         _ => TRUNK,
     };
-    let (pale, share) = GHOST;
+    let (pale, fraction) = GHOST;
     match look {
         Look::Solid => own,
-        Look::Ghost => std::array::from_fn(|i| own[i] + share * (pale[i] - own[i])),
+        Look::Ghost => std::array::from_fn(|i| own[i] + fraction * (pale[i] - own[i])),
     }
 }
 
@@ -66,7 +66,7 @@ fn shape(scene: &mut Scene, shape: Shape, pose: &Pose, colour: Colour) {
     }
 }
 
-/// Scenes have upright boxes only: rods along x, side by side, fill a turned one.
+/// Scenes have upright boxes only: rods along x, side by side, fill a rotated one.
 fn cuboid(scene: &mut Scene, half: Vec3, pose: &Pose, colour: Colour) {
     let radius = half.min_element().min(ROUNDING);
     let inner = half - radius;

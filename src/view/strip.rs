@@ -19,13 +19,13 @@ use glam::Vec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Of a picture of the strip, and between two, pixels.
+/// Size of a picture of the strip, and the gap between two, pixels.
 const SIZE: [u32; 2] = [280, 340];
 const GAP: usize = 4;
 const PICTURES: usize = 7;
-/// Nothing balances a body whose drives follow angles: so long after its start it lies, s.
+/// Nothing balances a body whose drives follow angles: so long after its start it has fallen, s.
 const FALL: f32 = 1.5;
-/// From the front of the body to where the camera stands, rad.
+/// From the front of the body to the camera, rad.
 const YAW: f32 = 1.1;
 /// From the camera to a single body, m, and how much further for each metre to either side.
 const NEAR: f32 = 4.1;
@@ -129,7 +129,7 @@ impl<'a> Strip<'a> {
         let [width, height] = SIZE.map(|side| side as usize);
         let total_width = PICTURES * (width + GAP) - GAP;
         let mut strip = vec![255; 3 * total_width * height];
-        for (place, shot) in shots.iter().enumerate() {
+        for (index, shot) in shots.iter().enumerate() {
             self.camera.follow([shot.focus.x, shot.focus.z], 1.0);
             self.camera.distance = NEAR + WIDE * shot.side;
             self.renderer
@@ -139,7 +139,7 @@ impl<'a> Strip<'a> {
                 .read(&self.renderer.device, &self.renderer.queue)?;
             let rows = strip.chunks_exact_mut(3 * total_width);
             for (row, pixels) in rows.zip(picture.chunks_exact(3 * width)) {
-                row[3 * place * (width + GAP)..][..3 * width].copy_from_slice(pixels);
+                row[3 * index * (width + GAP)..][..3 * width].copy_from_slice(pixels);
             }
         }
         image_files::png(path, [total_width as u32, SIZE[1]], &strip)
@@ -169,7 +169,7 @@ impl<'a> Driven<'a> {
         }
     }
 
-    /// An action asks for the angles at its end.
+    /// An action requests the angles at its end.
     fn until(&mut self, time: f32) {
         let model = self.physics.model.clone();
         while (self.steps as f32) < (time * STEP_RATE).round() {

@@ -1,4 +1,4 @@
-//! The window's contents.
+//! The contents of the viewer's window.
 
 #[cfg(feature = "gamepad")]
 use super::gamepad::Gamepad;
@@ -23,15 +23,15 @@ use eframe::egui_wgpu::RenderState;
 const RATE: f32 = 30.0;
 /// Frames played at once, at most, when drawing is slower than the motion.
 const CATCH_UP: f32 = 6.0;
-/// How quickly the camera follows, a share a frame.
+/// Fraction of the way to the character that the camera covers in a frame.
 const FOLLOW: f32 = 0.2;
 /// Width of a frame's name in the search's table, points.
 const NAME: f32 = 150.0;
-/// Pieces of motion listed.
+/// Search results listed.
 const LISTED: usize = 8;
 
 /// A policy that can be chosen.
-pub struct Choice {
+pub struct PolicyEntry {
     pub name: String,
     /// Loads it.
     pub load: Box<dyn Fn() -> Result<Box<dyn Controller>>>,
@@ -40,8 +40,8 @@ pub struct Choice {
 pub struct Viewer {
     context: PlaythroughContext,
     source: Source,
-    /// A run's checkpoints; none when only motion is looked at.
-    choices: Vec<Choice>,
+    /// A run's checkpoints; none when only motion is shown.
+    policies: Vec<PolicyEntry>,
     chosen: usize,
     timeline: Timeline,
     /// Frame of a clip.
@@ -52,11 +52,11 @@ pub struct Viewer {
     owed: f32,
     camera: Camera,
     follow: bool,
-    /// The obstacle being dragged, and where on it the pointer is, m.
+    /// The obstacle being dragged, and the pointer relative to its centre, m.
     grabbed: Option<(usize, [f32; 2])>,
     search: bool,
     found: Vec<Found>,
-    /// The query that `found` answers.
+    /// The query of `found`.
     found_for: Option<[f32; ROW_STRIDE]>,
     /// What went wrong last.
     problem: Option<String>,
@@ -74,10 +74,10 @@ impl Viewer {
         gpu: &Gpu,
         window: &RenderState,
         context: PlaythroughContext,
-        choices: Vec<Choice>,
+        policies: Vec<PolicyEntry>,
     ) -> Result<Self> {
-        let source = match choices.last() {
-            Some(choice) => Source::Policy((choice.load)()?),
+        let source = match policies.last() {
+            Some(entry) => Source::Policy((entry.load)()?),
             None => Source::Steered(Steered::new(context.database().clone())),
         };
         let mut camera = Camera::default();
@@ -87,10 +87,10 @@ impl Viewer {
         }
         Ok(Viewer {
             timeline: Timeline::new(Playthrough::new(&context, 0)),
-            chosen: choices.len().saturating_sub(1),
+            chosen: policies.len().saturating_sub(1),
             context,
             source,
-            choices,
+            policies,
             clip_frame: 0,
             playing: true,
             speed: 1.0,
@@ -126,7 +126,7 @@ impl Viewer {
         }
     }
 
-    /// Where the character is shown to stand.
+    /// The shown frame and its position.
     pub fn shown(&self) -> PlacedFrame {
         match self.source {
             Source::Clip(clip) => self.clip_shown(clip),
@@ -295,7 +295,7 @@ impl Viewer {
         if let Some(problem) = &self.problem {
             ui.colored_label(ui.visuals().error_fg_color, problem);
         }
-        match self.choices.is_empty() {
+        match self.policies.is_empty() {
             true => self.choose_motion(ui),
             false => self.choose_policy(ui),
         }
@@ -321,14 +321,14 @@ impl Viewer {
     fn choose_policy(&mut self, ui: &mut Ui) {
         let mut chosen = self.chosen;
         egui::ComboBox::from_label("Checkpoint")
-            .selected_text(&self.choices[chosen].name)
+            .selected_text(&self.policies[chosen].name)
             .show_ui(ui, |ui| {
-                for (index, choice) in self.choices.iter().enumerate() {
-                    ui.selectable_value(&mut chosen, index, &choice.name);
+                for (index, entry) in self.policies.iter().enumerate() {
+                    ui.selectable_value(&mut chosen, index, &entry.name);
                 }
             });
         if chosen != self.chosen {
-            match (self.choices[chosen].load)() {
+            match (self.policies[chosen].load)() {
                 Ok(policy) => {
                     self.source = Source::Policy(policy);
                     self.chosen = chosen;
@@ -429,7 +429,7 @@ impl Viewer {
                 ui.end_row();
             }
         });
-        ui.small("Squared distances to what was requested, the frame played first.");
+        ui.small("Squared distances to the query, the frame played first.");
     }
 
     fn clip_shown(&self, clip: usize) -> PlacedFrame {
@@ -484,7 +484,7 @@ impl Viewer {
         }
     }
 
-    /// The obstacle at a point, and where on it the point lies.
+    /// The obstacle at a point, and the point relative to its centre.
     fn obstacle(&self, at: [f32; 2]) -> Option<(usize, [f32; 2])> {
         let obstacles = self.timeline.now().obstacles();
         let mut on = obstacles

@@ -5,9 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// A GPU draws this often; a software rasteriser, which takes the training's own processors, at most
-/// this share of the time.
+/// one part in so many of the time.
 const OFTEN: Duration = Duration::from_millis(16);
-const SHARE: u32 = 20;
+const PART: u32 = 20;
 /// Between two pictures of a software rasteriser, at least and at most.
 const SELDOM: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
 
@@ -35,6 +35,6 @@ impl Pace {
             *took.lock().unwrap_or_else(PoisonError::into_inner) = began.elapsed();
         });
         let took = *self.took.lock().unwrap_or_else(PoisonError::into_inner);
-        (SHARE * took).clamp(SELDOM[0], SELDOM[1])
+        (PART * took).clamp(SELDOM[0], SELDOM[1])
     }
 }

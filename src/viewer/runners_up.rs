@@ -6,7 +6,7 @@ use crate::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE};
 /// A candidate and its distance to a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
-    /// Of the database.
+    /// Frame of the database.
     pub frame: usize,
     /// Squared distances: of the pose's features and of the trajectory's.
     pub pose: f32,
@@ -19,7 +19,7 @@ impl Found {
     }
 }
 
-/// Candidates this close to a better one are the same piece of motion, frames.
+/// Candidates this close to a better one are the same motion, frames.
 const APART: usize = 15;
 
 /// The `count` nearest pieces of motion, the nearest first.

@@ -17,12 +17,12 @@ pub enum Source {
 /// m/s of a stick held all the way, and with the key for running.
 pub const WALK: f32 = 1.5;
 pub const RUN: f32 = 4.0;
-/// How far ahead of the character the point lies that it is steered to, m.
+/// Distance from the character to the point that it is steered to, m.
 pub const LOOK_AHEAD_M: f32 = 10.0;
 /// Fraction of the difference to the requested speed that a step makes up for.
 const EASE: f32 = 0.5;
 
-/// Classic motion matching: asks for a straight walk to a point that is always ahead.
+/// Classic motion matching: requests a straight walk to a point that is always ahead.
 pub struct Steered {
     database: Arc<Database>,
     /// m/s

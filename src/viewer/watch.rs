@@ -18,7 +18,7 @@ pub struct Crowded {
     task: LocomotionTask,
     envs: usize,
     watch: Arc<Watch>,
-    /// Once the worlds are open.
+    /// Once the environments are open.
     crowd: Option<Crowd>,
     camera: Camera,
     screen: Screen,
@@ -59,7 +59,7 @@ impl Crowded {
         let frame = egui::Frame::NONE;
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
             if self.crowd.is_none() {
-                ui.centered_and_justified(|ui| ui.label("opening the worlds ..."));
+                ui.centered_and_justified(|ui| ui.label("opening the environments ..."));
                 return;
             }
             let scene = Scene::default();

@@ -1,6 +1,6 @@
 //! Opens windows, on the device that everything else uses.
 
-use super::app::{Choice, Viewer};
+use super::app::{PolicyEntry, Viewer};
 use super::watch::Crowded;
 use crate::gpu::Gpu;
 use crate::motion::database::Database;
@@ -65,8 +65,8 @@ pub fn shared(gpu: &Gpu) -> WgpuSetup {
 ///
 /// # Errors
 /// There is no display, a policy cannot be loaded, or the GPU was lost.
-pub fn play(gpu: &Gpu, title: &str, context: PlaythroughContext, choices: Vec<Choice>) -> Result<()> {
-    let viewer = |window: &RenderState| Viewer::new(gpu, window, context, choices);
+pub fn play(gpu: &Gpu, title: &str, context: PlaythroughContext, policies: Vec<PolicyEntry>) -> Result<()> {
+    let viewer = |window: &RenderState| Viewer::new(gpu, window, context, policies);
     let over = Arc::new(AtomicBool::new(false));
     open(gpu, title, over, |window| Ok(Box::new(viewer(window)?)))
 }

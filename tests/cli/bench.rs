@@ -27,8 +27,8 @@ fn every_figure_is_written_down() {
         assert!(row["per_s"].as_f64().unwrap() > 0.0);
         assert!(row["roofline"].as_f64().unwrap() > 0.0);
     }
-    // Nothing here that has a curve.
-    assert!(!place.path("bench.png").exists());
+    // Nothing is drawn unless requested.
+    assert_eq!(place.list(), [place.path("figures.json")]);
 }
 
 #[test]
@@ -46,12 +46,12 @@ fn every_device_is_measured_by_itself() {
 #[test]
 fn what_cannot_be_measured_is_said_before_anything_is() {
     let place = Place::with_data();
-    place.refused("bench --filter serch", 2, &["serch", "search, rasterise"]);
+    place.refused("bench --filter serch", 2, &["serch", "search, rasterize_maps"]);
     place.refused("bench --json gone/a.json", 2, &["gone/a.json", "folder"]);
-    place.refused("bench --picture .", 2, &[". is no"]);
+    place.refused("bench --plot .", 2, &[". cannot be written"]);
     place.refused("bench --device gpux", 2, &["similar value exists: 'gpu'"]);
     let words = "bench --filter hits --device cpu --data";
     place.refused(&format!("{words} gone"), 1, &["gone"]);
-    let parts = &["small.footwork", "database file no longer has"];
-    place.refused(&format!("{words} small.footwork"), 1, parts);
+    place.refused(&format!("{words} small.footwork --plot a.png"), 1, &["nothing to draw"]);
+    assert!(!place.path("a.png").exists());
 }

@@ -8,7 +8,7 @@ use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
 use footwork::kernels::termination;
 use footwork::motion::features::FRAMES_PER_STEP;
 use footwork::viewer::Viewer;
-use footwork::viewer::app::Choice;
+use footwork::viewer::app::PolicyEntry;
 use footwork::viewer::window::shared;
 use footwork::view::playthrough::Playthrough;
 use footwork::env::locomotion::{Obstacles, Plane, Task};
@@ -19,24 +19,24 @@ fn plane() -> Task {
 /// A point of the ground in front of the character.
 const GROUND: Pos2 = Pos2::new(250.0, 430.0);
 
-fn walker() -> Choice {
-    Choice {
+fn walker() -> PolicyEntry {
+    PolicyEntry {
         name: "walker".into(),
         load: Box::new(|| Ok(Box::new(Walker))),
     }
 }
 
-fn broken() -> Choice {
-    Choice {
+fn broken() -> PolicyEntry {
+    PolicyEntry {
         name: "broken".into(),
         load: Box::new(|| anyhow::bail!("this checkpoint is damaged")),
     }
 }
 
-fn open(task: Task, choices: Vec<Choice>) -> Harness<'static, Viewer> {
+fn open(task: Task, policies: Vec<PolicyEntry>) -> Harness<'static, Viewer> {
     let gpu = gpu();
     let window = create_render_state(shared(&gpu), Default::default());
-    let viewer = Viewer::new(&gpu, &window, context(task), choices).unwrap();
+    let viewer = Viewer::new(&gpu, &window, context(task), policies).unwrap();
     let renderer = WgpuTestRenderer::from_render_state(window);
     let mut harness = Harness::builder()
         .with_size(Vec2::new(900.0, 560.0))

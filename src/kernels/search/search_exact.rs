@@ -41,14 +41,16 @@ impl Params {
     pub fn block_runs(self) -> impl Iterator<Item = BlockRun> {
         let blocks = self.candidates.div_ceil(self.block);
         let run = (ROWS / self.block).max(1);
-        (0..blocks).step_by(run as usize).map(move |first| BlockRun {
-            count: self.count,
-            candidates: self.candidates,
-            block: self.block,
-            first,
-            last: blocks.min(first + run),
-            max_norm: self.max_norm,
-        })
+        (0..blocks)
+            .step_by(run as usize)
+            .map(move |first| BlockRun {
+                count: self.count,
+                candidates: self.candidates,
+                block: self.block,
+                first,
+                last: blocks.min(first + run),
+                max_norm: self.max_norm,
+            })
     }
 }
 

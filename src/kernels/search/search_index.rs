@@ -19,7 +19,11 @@ pub fn corners(boxes: &[[f32; TRAJECTORY_DIM]], at: usize) -> &[[f32; TRAJECTORY
 }
 
 /// Squared distance of a trajectory along the axes to a box, on top of what is known of the pose.
-pub fn bound(corners: &[[f32; TRAJECTORY_DIM]], projected: &[f32; TRAJECTORY_DIM], pose: f32) -> f32 {
+pub fn bound(
+    corners: &[[f32; TRAJECTORY_DIM]],
+    projected: &[f32; TRAJECTORY_DIM],
+    pose: f32,
+) -> f32 {
     let each = corners[0].iter().zip(&corners[1]).zip(projected);
     each.fold(pose, |sum, ((low, high), value)| {
         let outside = (low - value).max(value - high).max(0.0);

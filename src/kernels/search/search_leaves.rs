@@ -1,9 +1,9 @@
 //! The nearest candidate among the leaves that were not pruned. Shader: `shaders/search/search_leaves.wgsl`.
 
-use crate::motion::features::ROW_STRIDE;
-use super::search_index::{LANES, LEAF, offer};
 use super::search_exact::squared;
+use super::search_index::{LANES, LEAF, offer};
 use crate::gpu::{Buffer, Gpu, shader};
+use crate::motion::features::ROW_STRIDE;
 
 crate::shader_params! {
     pub struct Params for search_leaves {
@@ -39,7 +39,15 @@ pub fn launch(
     gpu.launch(
         &shader::SEARCH_LEAVES,
         [across as u32, workgroups.div_ceil(across) as u32, 1],
-        &[rows, quantised_rows, queries, query_projection, leaf_mask, distance, candidates],
+        &[
+            rows,
+            quantised_rows,
+            queries,
+            query_projection,
+            leaf_mask,
+            distance,
+            candidates,
+        ],
         params,
     );
 }

@@ -1,6 +1,6 @@
 //! The leaves of the index that may hold something nearer. Shader: `shaders/search/search_prune.wgsl`.
 
-use super::search_index::{PROJECTION_LEN, GROUP, LANES, block_of, bound, corners, limit, square};
+use super::search_index::{GROUP, LANES, PROJECTION_LEN, block_of, bound, corners, limit, square};
 use crate::gpu::shader::search_prune::constants;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::features::TRAJECTORY_DIM;
@@ -40,7 +40,14 @@ pub fn launch(
     gpu.launch(
         &shader::SEARCH_PRUNE,
         [params.count.div_ceil(workgroup), runs, 1],
-        &[boxes, distance_codes, shown, query_projection, distance, leaf_mask],
+        &[
+            boxes,
+            distance_codes,
+            shown,
+            query_projection,
+            distance,
+            leaf_mask,
+        ],
         params,
     );
 }

@@ -1,8 +1,8 @@
 //! Scores the blocks of the database for every query, on software adapters.
 //! Shader: `shaders/search/search_score_lanes.wgsl`.
 
-use crate::motion::features::ROW_STRIDE;
 use crate::gpu::{Buffer, Gpu, shader};
+use crate::motion::features::ROW_STRIDE;
 
 crate::shader_params! {
     pub struct Params for search_score_lanes {
@@ -41,7 +41,12 @@ pub fn launch(
     );
 }
 
-pub fn twin(rows: &[[f32; ROW_STRIDE]], queries: &[[f32; ROW_STRIDE]], score: &mut [f32], params: &Params) {
+pub fn twin(
+    rows: &[[f32; ROW_STRIDE]],
+    queries: &[[f32; ROW_STRIDE]],
+    score: &mut [f32],
+    params: &Params,
+) {
     let count = params.count as usize;
     for (block, rows) in rows.chunks(params.block as usize).enumerate() {
         for (at, query) in queries.iter().enumerate().take(count) {
@@ -58,7 +63,7 @@ fn dot(row: &[f32; ROW_STRIDE], query: &[f32; ROW_STRIDE]) -> f32 {
     row.iter().zip(query).map(|(r, q)| r * q).sum()
 }
 
-/// A row with minus half its square in the last place, as the scoring shaders read it.
+/// A row with minus half its square as its last number, as the scoring shaders read it.
 pub fn with_half_square(row: &[f32; ROW_STRIDE]) -> [f32; ROW_STRIDE] {
     let mut row = *row;
     let square: f64 = row[..ROW_STRIDE - 1]

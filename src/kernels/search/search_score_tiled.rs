@@ -2,9 +2,9 @@
 //! Shader: `shaders/search/search_score_tiled.wgsl`; its scores are those of
 //! `search_score_lanes`.
 
-use crate::motion::features::ROW_STRIDE;
 use super::search_score_lanes;
 use crate::gpu::{Buffer, Gpu, shader};
+use crate::motion::features::ROW_STRIDE;
 
 crate::shader_params! {
     pub struct Params for search_score_tiled {
@@ -42,7 +42,12 @@ pub fn launch(
     );
 }
 
-pub fn twin(rows: &[[f32; ROW_STRIDE]], queries: &[[f32; ROW_STRIDE]], score: &mut [f32], params: &Params) {
+pub fn twin(
+    rows: &[[f32; ROW_STRIDE]],
+    queries: &[[f32; ROW_STRIDE]],
+    score: &mut [f32],
+    params: &Params,
+) {
     let Params {
         count,
         candidates,

@@ -1,7 +1,9 @@
 //! A first candidate for every query, by the index. Shader: `shaders/search/search_seed.wgsl`.
 
-use super::search_index::{PROJECTION_LEN, GROUP, LANES, LEAF, block_of, bound, corners, offer, square};
 use super::search_exact::squared;
+use super::search_index::{
+    GROUP, LANES, LEAF, PROJECTION_LEN, block_of, bound, corners, offer, square,
+};
 use crate::gpu::shader::search_seed::constants;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
@@ -38,7 +40,14 @@ pub fn launch(
         &shader::SEARCH_SEED,
         [params.count.div_ceil(workgroup), 1, 1],
         &[
-            rows, boxes, distance_codes, shown, queries, query_projection, distance, candidates,
+            rows,
+            boxes,
+            distance_codes,
+            shown,
+            queries,
+            query_projection,
+            distance,
+            candidates,
         ],
         params,
     );
@@ -80,7 +89,11 @@ pub fn twin(
         for (axis, value) in projected.into_iter().enumerate() {
             query_projection[axis * count + at] = value;
         }
-        let length = query[..FEATURE_DIM].iter().map(|q| q * q).sum::<f32>().sqrt();
+        let length = query[..FEATURE_DIM]
+            .iter()
+            .map(|q| q * q)
+            .sum::<f32>()
+            .sqrt();
         query_projection[(PROJECTION_LEN - 1) * count + at] = 4e-6 * (params.max_norm + length);
     }
 }

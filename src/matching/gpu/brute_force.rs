@@ -1,8 +1,8 @@
 //! The search on the GPU over all rows, by the kernels that suit the adapter.
 
-use crate::motion::features::ROW_STRIDE;
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::search::{search_exact, search_score_lanes, search_score_tiled};
+use crate::motion::features::ROW_STRIDE;
 
 /// The rows on the device, and what the search needs for batches of one size.
 pub struct BruteForceSearch {
@@ -35,7 +35,10 @@ impl BruteForceSearch {
         let candidates = rows.len() as u32;
         let blocks = BLOCKS.min(SCORES / count as u32).max(1);
         let block = BLOCK * candidates.div_ceil(BLOCK * blocks);
-        let halved: Vec<_> = rows.iter().map(search_score_lanes::with_half_square).collect();
+        let halved: Vec<_> = rows
+            .iter()
+            .map(search_score_lanes::with_half_square)
+            .collect();
         let square = halved
             .iter()
             .map(|row| -2.0 * row[ROW_STRIDE - 1])

@@ -1,7 +1,7 @@
 //! The search on the GPU by the index, for software adapters.
 
-use crate::gpu::{Buffer, Gpu};
 use super::packed_index::PackedIndex;
+use crate::gpu::{Buffer, Gpu};
 use crate::kernels::search::search_index::{GROUP, LANES, PROJECTION_LEN};
 use crate::kernels::search::{search_argmin, search_leaves, search_prune, search_seed};
 use crate::matching::Index;

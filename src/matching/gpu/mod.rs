@@ -24,11 +24,9 @@ impl GpuSearch {
     pub fn new(gpu: &Gpu, matcher: &MotionMatcher, count: usize) -> Self {
         match gpu.software {
             true => GpuSearch::Indexed(IndexedSearch::new(gpu, &matcher.index, count)),
-            false => GpuSearch::BruteForce(BruteForceSearch::new(
-                gpu,
-                &matcher.database.rows(),
-                count,
-            )),
+            false => {
+                GpuSearch::BruteForce(BruteForceSearch::new(gpu, &matcher.database.rows(), count))
+            }
         }
     }
 

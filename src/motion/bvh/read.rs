@@ -1,9 +1,9 @@
 //! From the text of a BVH file to a recording.
 
-use crate::motion::error::{MotionError, MotionResult};
 use super::Recording;
 use super::hierarchy::{self, Channel, Hierarchy, problem};
 use super::values::{self, Values};
+use crate::motion::error::{MotionError, MotionResult};
 use glam::{Quat, Vec3};
 use std::io::Read;
 use std::path::Path;
@@ -14,7 +14,7 @@ pub const MAX_BYTES: u64 = 1 << 30;
 /// Frames times joints that one file may have (about 0.5 GB of rotations).
 pub const MAX_ROTATIONS: usize = 1 << 25;
 
-/// A bone may change its length by this share of the longest bone and still count as rigid.
+/// A bone may change its length by this fraction of the longest bone and still count as rigid.
 const SLACK: f32 = 0.05;
 
 /// Reads a BVH file. Lengths stay in the file's unit, the rate is the file's own.
@@ -167,7 +167,7 @@ impl Motion {
         let mut numbers = self.values.numbers.iter();
         for _ in 0..self.values.frames {
             for channels in channels {
-                // The zip asks the channels first, so no number is lost at the end of a joint.
+                // The zip takes the channels first, so no number is lost at the end of a joint.
                 let turns = channels.iter().zip(numbers.by_ref());
                 let rotation = turns.fold(Quat::IDENTITY, |rotation, (channel, &value)| {
                     rotation * turn(*channel, value)

@@ -1,7 +1,7 @@
 //! The second half of a BVH file: how many frames, how fast, and their numbers.
 
-use crate::motion::error::MotionResult;
 use super::hierarchy::{number, problem, shorten};
+use crate::motion::error::MotionResult;
 use std::path::Path;
 
 /// Rates (Hz) outside of this are a mistake in the file: the import could neither thin them

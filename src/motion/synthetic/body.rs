@@ -116,7 +116,7 @@ impl Bearing {
         1.0 - self.gait
     }
 
-    /// Of the weight to the left, standing (m).
+    /// Shift of the weight to the left, standing (m).
     fn shift(&self, manner: &Manner) -> f32 {
         SHIFT * self.idle() * manner.wander(0, self.time)
     }

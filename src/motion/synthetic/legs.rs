@@ -19,7 +19,7 @@ pub struct Leg {
     pub shin: Quat,
 }
 
-/// The share of its length that a leg shows where `share` is asked of it: equal up to a limit,
+/// The share of its length that a leg shows where `share` is requested of it: equal up to a limit,
 /// then levelling off below [`LONGEST`]. In the `air` (0..1) it levels off from earlier on.
 fn reach(share: f32, air: f32) -> f32 {
     let limit = mix(STRAIGHT, EASY, air);

@@ -61,7 +61,7 @@ pub fn takes(seed: u64, minutes: f32) -> Vec<Take> {
         .collect()
 }
 
-/// Frames of each clip; together they are exactly as long as asked for.
+/// Frames of each clip; together they are exactly as long as requested.
 fn lengths(seed: u64, minutes: f32) -> Vec<usize> {
     let mut random = Random::new(seed, u64::MAX);
     let mut left = (minutes * 60.0 * RATE).round() as usize;

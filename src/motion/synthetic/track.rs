@@ -14,7 +14,7 @@ const ACCELERATION: f32 = 6.5;
 const PIVOT: f32 = 4.5;
 /// Change of the turning rate (rad/s2).
 const PIVOT_ACCELERATION: f32 = 30.0;
-/// Share of the speed asked for that is given before the body has turned to its way.
+/// Share of the requested speed that is given before the body has turned to its way.
 const HESITATION: f32 = 0.4;
 /// Nobody faces further away from where they still slide (rad) above this speed (m/s).
 const SLIP: f32 = 1.2;
@@ -72,14 +72,14 @@ impl Track {
     pub fn follow(commands: &[Command], frames: usize) -> Track {
         let dt = 1.0 / RATE;
         let mut now = Moment::default();
-        let mut asked = 0.0;
+        let mut requested = 0.0;
         let mut moments = Vec::with_capacity(frames);
         for command in commands {
-            asked += command.face;
+            requested += command.face;
             for _ in 0..(command.seconds * RATE).round() as usize {
                 moments.push(now);
-                asked += command.turn * dt;
-                now = advance(now, command, asked, dt);
+                requested += command.turn * dt;
+                now = advance(now, command, requested, dt);
             }
         }
         // Commands never fall short by more than their rounding: stay as it ends.
@@ -104,15 +104,15 @@ impl Track {
     }
 }
 
-/// One frame of the springs towards `command`, facing `asked`.
-fn advance(now: Moment, command: &Command, asked: f32, dt: f32) -> Moment {
-    let aligned = (0.5 + 0.5 * (asked - now.yaw).cos()).max(HESITATION);
-    let wanted = heading(asked + command.bearing) * (command.speed * aligned);
+/// One frame of the springs towards `command`, facing `requested`.
+fn advance(now: Moment, command: &Command, requested: f32, dt: f32) -> Moment {
+    let aligned = (0.5 + 0.5 * (requested - now.yaw).cos()).max(HESITATION);
+    let wanted = heading(requested + command.bearing) * (command.speed * aligned);
     let jerk = spring((wanted - now.velocity) * STIFFNESS, now.acceleration);
     let acceleration = (now.acceleration + jerk * dt).clamp_length_max(ACCELERATION);
     let velocity = now.velocity + acceleration * dt;
 
-    let goal = facing_while_sliding(&now, command, asked);
+    let goal = facing_while_sliding(&now, command, requested);
     let twist = STIFFNESS * (STIFFNESS * (goal - now.yaw) - 2.0 * now.turn);
     let turn = now.turn + twist.clamp(-PIVOT_ACCELERATION, PIVOT_ACCELERATION) * dt;
     let turn = turn.clamp(-PIVOT, PIVOT);
@@ -129,18 +129,18 @@ fn spring(pull: Vec3, rate: Vec3) -> Vec3 {
     STIFFNESS * (pull - 2.0 * rate)
 }
 
-/// The heading asked for, held back while the body still slides fast in another direction.
-fn facing_while_sliding(now: &Moment, command: &Command, asked: f32) -> f32 {
+/// The requested heading, held back while the body still slides fast in another direction.
+fn facing_while_sliding(now: &Moment, command: &Command, requested: f32) -> f32 {
     let speed = now.speed();
     if speed <= SLIP_SPEED {
-        return asked;
+        return requested;
     }
     let sliding = now.velocity.x.atan2(now.velocity.z) - command.bearing;
-    let slip = asked - sliding;
+    let slip = requested - sliding;
     let wrapped = slip - TAU * (slip / TAU).round();
     let allowed = SLIP + PI * (2.0 - speed / SLIP_SPEED).max(0.0);
     let excess = wrapped - wrapped.clamp(-allowed, allowed);
-    let to_go = asked - now.yaw;
+    let to_go = requested - now.yaw;
     if excess * to_go < 0.0 {
         // The held-back heading lies behind: wait, never swing back the other way.
         now.yaw

@@ -1,8 +1,7 @@
 //! Where the levels of a curriculum begin, as in the paper's figure 5.
 
-use super::{LEFT, RIGHT, WIDTH};
 use crate::report::ReportError;
-use crate::report::canvas::{Anchor, Canvas, text_width};
+use crate::report::canvas::{Anchor, Canvas, Pixel, text_width};
 use crate::report::chart::{self, Plot};
 
 /// The beginning of a curriculum's level.
@@ -15,7 +14,11 @@ pub struct Level {
 }
 
 /// A dashed line where each level begins.
-pub fn draw_lines(canvas: &mut Canvas<'_>, plot: &Plot, levels: &[Level]) -> Result<(), ReportError> {
+pub fn draw_lines(
+    canvas: &mut Canvas<'_>,
+    plot: &Plot,
+    levels: &[Level],
+) -> Result<(), ReportError> {
     for level in levels {
         if level.steps as f64 <= plot.x.max {
             let (x, _) = plot.at(level.steps as f64, plot.y.min);
@@ -28,7 +31,7 @@ pub fn draw_lines(canvas: &mut Canvas<'_>, plot: &Plot, levels: &[Level]) -> Res
 
 /// The numbers of levels that begin so close together that they share a label.
 pub struct Numbers {
-    /// The first number, and where its line lies, in pixels from the left.
+    /// The first number, and the position of its line, in pixels from the left.
     first: (usize, f64),
     last: (usize, f64),
 }
@@ -59,14 +62,19 @@ impl Numbers {
     }
 }
 
-/// Puts each level's number above its line; neighbours without room for two become one.
-pub fn place_numbers(levels: &[Level], end: f64) -> Result<Vec<Numbers>, ReportError> {
+/// Puts each level's number above its line, `end` steps from the left to the right pixel; neighbours
+/// without room for two become one.
+pub fn place_numbers(
+    levels: &[Level],
+    end: f64,
+    [left, right]: [f64; 2],
+) -> Result<Vec<Numbers>, ReportError> {
     let mut sorted: Vec<&Level> = levels.iter().collect();
     sorted.retain(|level| level.steps as f64 <= end);
     sorted.sort_by_key(|level| (level.steps, level.level));
     let mut placed: Vec<Numbers> = Vec::with_capacity(sorted.len());
     for level in sorted {
-        let x = LEFT + (WIDTH - RIGHT - LEFT) * level.steps as f64 / end;
+        let x = left + (right - left) * level.steps as f64 / end;
         let mut next = Numbers {
             first: (level.level, x),
             last: (level.level, x),
@@ -84,12 +92,16 @@ pub fn place_numbers(levels: &[Level], end: f64) -> Result<Vec<Numbers>, ReportE
     Ok(placed)
 }
 
-/// Writes the numbers at height `y`, and what they are before them.
-pub fn draw_numbers(canvas: &mut Canvas<'_>, numbers: &[Numbers], y: f64) -> Result<(), ReportError> {
+/// Writes the numbers at height `y`, and what they are to the left of `left`.
+pub fn draw_numbers(
+    canvas: &mut Canvas<'_>,
+    numbers: &[Numbers],
+    (left, y): Pixel,
+) -> Result<(), ReportError> {
     if numbers.is_empty() {
         return Ok(());
     }
-    let at = (LEFT - 32.0, y);
+    let at = (left - 32.0, y);
     canvas.text("level", at, Anchor::Right, chart::SMALL, chart::MUTED)?;
     numbers.iter().try_for_each(|numbers| {
         let at = (numbers.middle(), y);

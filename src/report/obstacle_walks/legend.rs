@@ -1,6 +1,6 @@
-//! What the symbols in the panels stand for.
+//! The legend of the symbols in the panels.
 
-use super::{OBSTACLE, SEEN, WAY, draw_arrow, draw_outline, draw_rectangle};
+use super::symbols::{OBSTACLE, SEEN, WAY, draw_arrow, draw_outline, draw_rectangle};
 use crate::report::ReportError;
 use crate::report::canvas::{Anchor, Canvas, Pixel, text_width};
 use crate::report::{chart, ground};
@@ -34,7 +34,10 @@ const LEGEND: [(Symbol, &str); 6] = [
 /// Left end, in pixels, and row of each item, no row wider than `room`.
 pub fn place(room: f64) -> Result<Vec<(f64, usize)>, ReportError> {
     let width = |(_, text): &(Symbol, &str)| Ok(SYMBOL + text_width(text, chart::SMALL)?);
-    let widths: Vec<f64> = LEGEND.iter().map(width).collect::<Result<_, ReportError>>()?;
+    let widths: Vec<f64> = LEGEND
+        .iter()
+        .map(width)
+        .collect::<Result<_, ReportError>>()?;
     Ok(chart::flow(&widths, GAP, room))
 }
 

@@ -1,6 +1,7 @@
 //! The obstacle maps beside an episode's panel.
 
-use super::{CELLS, Episode, Map, OBSTACLE, SEEN, draw_arrow, draw_outline, seconds};
+use super::episode::{CELLS, Episode, Map, seconds};
+use super::symbols::{OBSTACLE, SEEN, draw_arrow, draw_outline};
 use crate::report::ReportError;
 use crate::report::canvas::{Anchor, Canvas, Pixel};
 use crate::report::chart;
@@ -8,13 +9,16 @@ use crate::report::chart;
 const CELL: f64 = 15.0;
 /// Width and height of a map, in pixels.
 pub const SIDE: f64 = CELL * CELLS as f64;
+/// From the lower end of one map to that of the other.
+const APART: f64 = 280.0;
 
-/// What was seen at the moment, above, and a step before, below.
+/// Draws the maps observed at the moment, above, and a step before, below. The lower one ends at
+/// `bottom`.
 pub fn draw(
     canvas: &mut Canvas<'_>,
     episode: &Episode,
     step_s: f32,
-    (left, top): Pixel,
+    (left, bottom): Pixel,
 ) -> Result<(), ReportError> {
     let now = episode.seen;
     let titles = [
@@ -22,12 +26,12 @@ pub fn draw(
         format!("and at {}", seconds(now.saturating_sub(1), step_s)),
     ];
     for (index, (map, title)) in episode.maps.iter().zip(&titles).enumerate() {
-        let bottom = top + super::SIDE - (1 - index) as f64 * super::SIDE / 2.0;
+        let bottom = bottom - (1 - index) as f64 * APART;
         let at = (left, bottom - SIDE - 20.0);
         canvas.text(title, at, Anchor::Left, chart::NORMAL, SEEN)?;
         draw_map(canvas, map, (left, bottom - SIDE))?;
     }
-    let at = (left + SIDE / 2.0, top + super::SIDE + 22.0);
+    let at = (left + SIDE / 2.0, bottom + 22.0);
     let text = "6 m \u{d7} 6 m, ahead is up";
     canvas.text(text, at, Anchor::Centre, chart::SMALL, chart::MUTED)
 }

@@ -8,12 +8,12 @@ use crate::checked;
 use crate::inputs::{Draw, POISON, POISON_WHOLE, SIZES, close, gpu};
 use bytemuck::cast_slice;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::search::search_index::{PROJECTION_LEN, GROUP, LANES};
 use footwork::kernels::search::search_exact::squared;
-use footwork::kernels::search::{search_leaves, search_seed, search_argmin, search_prune};
-use footwork::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
+use footwork::kernels::search::search_index::{GROUP, LANES, PROJECTION_LEN};
+use footwork::kernels::search::{search_argmin, search_leaves, search_prune, search_seed};
 use footwork::matching::gpu::packed_index::PackedIndex;
 use footwork::matching::{DEFAULT_TABLE_BYTES, Index};
+use footwork::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
 
 const ROUNDING: f32 = 4.0 * f32::EPSILON;
 
@@ -130,10 +130,15 @@ impl Case {
 
     fn seed_agrees(&self, twin: &Known, got: &Known) {
         let count = self.count();
-        close("query_projection", &got.query_projection, &twin.query_projection, |i| match i / count {
-            axis if axis < TRAJECTORY_DIM => twin.query_projection[12 * count + i % count],
-            _ => 1e-5 * twin.query_projection[i],
-        });
+        close(
+            "query_projection",
+            &got.query_projection,
+            &twin.query_projection,
+            |i| match i / count {
+                axis if axis < TRAJECTORY_DIM => twin.query_projection[12 * count + i % count],
+                _ => 1e-5 * twin.query_projection[i],
+            },
+        );
         let mut others = 0;
         for at in 0..count {
             let candidate = got.candidates[at];
@@ -194,7 +199,10 @@ impl Case {
     }
 
     fn codes(&self, gpu: &footwork::gpu::Gpu) -> Buffer<u32> {
-        Buffer::from_slice(gpu, &bytemuck::pod_collect_to_vec(&self.packed.distance_codes))
+        Buffer::from_slice(
+            gpu,
+            &bytemuck::pod_collect_to_vec(&self.packed.distance_codes),
+        )
     }
 
     fn prune_twin(&self, known: &Known) -> Vec<u32> {
@@ -331,7 +339,12 @@ impl Case {
 #[test]
 fn each_agrees_with_its_twin() {
     for (seed, count) in (0..).zip(SIZES) {
-        for (rows, memory) in [(1, DEFAULT_TABLE_BYTES), (300, DEFAULT_TABLE_BYTES), (3000, 0), (9000, DEFAULT_TABLE_BYTES)] {
+        for (rows, memory) in [
+            (1, DEFAULT_TABLE_BYTES),
+            (300, DEFAULT_TABLE_BYTES),
+            (3000, 0),
+            (9000, DEFAULT_TABLE_BYTES),
+        ] {
             let case = Case::new(count, rows, memory, seed);
             let first = case.seed_twin();
             case.seed_shader_agrees(&first);

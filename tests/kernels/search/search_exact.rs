@@ -19,7 +19,10 @@ struct Case {
 
 impl Case {
     fn new(rows: &[[f32; ROW_STRIDE]], queries: Vec<[f32; ROW_STRIDE]>, block: u32) -> Self {
-        let rows: Vec<_> = rows.iter().map(search_score_lanes::with_half_square).collect();
+        let rows: Vec<_> = rows
+            .iter()
+            .map(search_score_lanes::with_half_square)
+            .collect();
         let max_norm = rows
             .iter()
             .map(|row| -2.0 * row[FEATURE_DIM])
@@ -80,15 +83,17 @@ impl Case {
 
     fn checked(&self) -> Vec<u32> {
         let groups = groups(&shader::SEARCH_EXACT, self.queries.len());
-        self.params.block_runs().fold(self.matched(), |matched, run| {
-            let buffers: [&[u8]; 4] = [
-                cast_slice(&self.rows),
-                cast_slice(&self.queries),
-                cast_slice(&self.score),
-                cast_slice(&matched),
-            ];
-            checked::run(&shader::SEARCH_EXACT, groups, &buffers, &run).of(3)
-        })
+        self.params
+            .block_runs()
+            .fold(self.matched(), |matched, run| {
+                let buffers: [&[u8]; 4] = [
+                    cast_slice(&self.rows),
+                    cast_slice(&self.queries),
+                    cast_slice(&self.score),
+                    cast_slice(&matched),
+                ];
+                checked::run(&shader::SEARCH_EXACT, groups, &buffers, &run).of(3)
+            })
     }
 
     fn agrees(&self) {

@@ -2,13 +2,13 @@
 //! Bar, for `search_score_lanes`, `search_score_tiled` and their twin: g(28) = 28 u / (1 - 28 u) times the
 //! largest sum of absolute products, u = 2^-24 (Higham, section 3.1): what `search_exact` allows.
 
-use footwork::motion::features::ROW_STRIDE;
 use crate::checked::{self, Outcome};
 use crate::inputs::{Draw, POISON, close, gpu};
 use bytemuck::cast_slice;
 use footwork::gpu::shader::Shader;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::search::{search_score_tiled, search_score_lanes};
+use footwork::kernels::search::{search_score_lanes, search_score_tiled};
+use footwork::motion::features::ROW_STRIDE;
 
 /// Queries, rows, rows a block and blocks an invocation or workgroup.
 pub const SHAPES: [[usize; 4]; 11] = [
@@ -40,7 +40,10 @@ impl Case {
             std::array::from_fn(|i| if i < 27 { query[i] * far } else { 1.0 })
         };
         Case {
-            rows: rows.iter().map(search_score_lanes::with_half_square).collect(),
+            rows: rows
+                .iter()
+                .map(search_score_lanes::with_half_square)
+                .collect(),
             queries: draw.rows(count, 1.0).into_iter().map(scaled).collect(),
             block,
             run,
@@ -137,7 +140,10 @@ impl Case {
         }
         self.close("launched", &score.read(&gpu).expect("scores"));
         let checked = if tile {
-            self.checked(&shader::SEARCH_SCORE_TILED, shader::search_score_tiled::constants::TILE)
+            self.checked(
+                &shader::SEARCH_SCORE_TILED,
+                shader::search_score_tiled::constants::TILE,
+            )
         } else {
             use shader::search_score_lanes::constants::{LANES, QUERIES};
             self.checked(&shader::SEARCH_SCORE_LANES, LANES * QUERIES)

@@ -6,12 +6,12 @@ use crate::inputs::{Draw, gpu};
 use crate::oracle::Oracle;
 use footwork::gpu::{Buffer, Gpu};
 use footwork::kernels::search::search_exact;
-use footwork::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE};
-use footwork::motion::normalise::Weights;
-use footwork::matching::{DEFAULT_TABLE_BYTES, Index};
-use footwork::train::data;
 use footwork::matching::gpu::brute_force::BruteForceSearch;
 use footwork::matching::gpu::indexed::IndexedSearch;
+use footwork::matching::{DEFAULT_TABLE_BYTES, Index};
+use footwork::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE};
+use footwork::motion::normalise::Weights;
+use footwork::train::data;
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
