@@ -4,11 +4,16 @@ mod ablate;
 mod bench;
 mod data;
 mod eval;
+#[cfg(feature = "viewer")]
 mod play;
+mod progress;
+#[cfg(feature = "viewer")]
 mod render;
 mod run;
 mod sim;
 mod train;
+#[cfg(feature = "viewer")]
+mod watch;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
@@ -33,8 +38,10 @@ enum Command {
     /// Evaluate a trained policy on a fixed set of episodes
     Eval(eval::Eval),
     /// Open a window on a trained policy, or on motion
+    #[cfg(feature = "viewer")]
     Play(play::Play),
     /// Draw what a trained policy does, to files
+    #[cfg(feature = "viewer")]
     Render(render::Render),
     /// Let simulated bodies move by random actions: throughput and statistics
     Sim(sim::Sim),
@@ -55,7 +62,9 @@ pub fn run() -> Result<()> {
         Command::Train(train) => train.run(),
         Command::Ablate(ablate) => ablate.run(),
         Command::Eval(eval) => eval.run(),
+        #[cfg(feature = "viewer")]
         Command::Play(play) => play.run(),
+        #[cfg(feature = "viewer")]
         Command::Render(render) => render.run(),
         Command::Sim(sim) => sim.run(),
         Command::Bench(bench) => bench.run(),
