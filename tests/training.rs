@@ -59,7 +59,7 @@ impl Place {
             device: &device,
         };
         let from = begun.then(|| self.last(run));
-        train(training, from, &AtomicBool::new(false), None)
+        train(training, from, &AtomicBool::new(false), &mut ())
     }
 
     /// A run's last checkpoint.

@@ -1,6 +1,7 @@
 //! `footwork ablate`.
 
 use super::Usage;
+use super::progress::Progress;
 use super::train::{Choices, Opened, on_interrupt};
 use anyhow::Result;
 use clap::Args;
@@ -62,7 +63,10 @@ impl Ablate {
             device: &device,
             out: &out,
         };
-        match comparison.run(self.seeds, interrupted)? {
+        let mut progress = Progress::new(&config);
+        let outcomes = comparison.run(self.seeds, interrupted, &mut progress)?;
+        drop(progress);
+        match outcomes {
             Some(outcomes) => print!("{}", comparison.summary(&outcomes)),
             None => println!("go on with the same command"),
         }

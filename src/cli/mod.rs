@@ -4,12 +4,17 @@ mod ablate;
 mod bench;
 mod data;
 mod eval;
+#[cfg(feature = "viewer")]
 mod play;
+mod progress;
+#[cfg(feature = "viewer")]
 mod render;
 mod run;
 mod sim;
 mod train;
 mod usage;
+#[cfg(feature = "viewer")]
+mod watch;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
@@ -35,8 +40,10 @@ enum Command {
     /// Evaluate a trained policy on a fixed set of episodes
     Eval(eval::Eval),
     /// Open a window on a trained policy, or on motion
+    #[cfg(feature = "viewer")]
     Play(play::Play),
     /// Draw what a trained policy does, to files
+    #[cfg(feature = "viewer")]
     Render(render::Render),
     /// Let simulated bodies move by random actions: throughput and statistics
     Sim(sim::Sim),
@@ -52,7 +59,9 @@ pub fn run() -> Result<()> {
         Command::Train(train) => train.run(),
         Command::Ablate(ablate) => ablate.run(),
         Command::Eval(eval) => eval.run(),
+        #[cfg(feature = "viewer")]
         Command::Play(play) => play.run(),
+        #[cfg(feature = "viewer")]
         Command::Render(render) => render.run(),
         Command::Sim(sim) => sim.run(),
         Command::Bench(bench) => bench.run(),

@@ -4,9 +4,12 @@ use anyhow::{Context, Result};
 use footwork::env::EnvSpec;
 use footwork::train::checkpoint::{Checkpoint, CheckpointError};
 use footwork::train::config::Config;
+#[cfg(feature = "viewer")]
 use footwork::train::locomotion::Locomotion;
 use footwork::train::run_dir::RunDir;
-use footwork::train::task::{Task, Unsupported};
+use footwork::train::task::Task;
+#[cfg(feature = "viewer")]
+use footwork::train::task::Unsupported;
 use footwork::train::tasks::{config_of, find};
 use std::path::{Path, PathBuf};
 
@@ -53,6 +56,7 @@ impl Run {
     }
 
     /// What only runs of motion matching have; `wanted` is who asks for it.
+    #[cfg(feature = "viewer")]
     pub fn locomotion(&self, wanted: &str) -> Result<&Locomotion, Unsupported> {
         let name = &self.config.task.name;
         let why = || Unsupported(format!("`{wanted}` shows motion matching, which `{name}` is not of"));

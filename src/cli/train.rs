@@ -1,21 +1,24 @@
 //! `footwork train`.
 
 use super::Usage;
+use super::progress::Progress;
+#[cfg(feature = "viewer")]
+use super::watch::watched;
 use anyhow::Result;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use footwork::env::EnvSpec;
-use footwork::gpu::{Choice, Device, Gpu};
+use footwork::gpu::{Choice, Device};
 use footwork::rl::rollout::check_fits;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Preset};
 use footwork::train::run_dir::{RunDir, Summary};
-use footwork::train::task::{Task, TaskEntry, Unsupported};
+#[cfg(feature = "viewer")]
+use footwork::train::task::Unsupported;
+use footwork::train::task::{Task, TaskEntry};
 use footwork::train::tasks::{REGISTRY, config_of, find};
-use footwork::train::trainer::{Training, Watch, train};
-use footwork::viewer::window;
+use footwork::train::trainer::{Training, train};
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 #[derive(Args)]
@@ -35,6 +38,7 @@ pub struct Train {
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seed: Option<u32>,
     /// Open a window on all environments; closing it does not stop the training
+    #[cfg(feature = "viewer")]
     #[arg(long)]
     watch: bool,
     /// The run's folder [default: runs/TASK-N]
@@ -122,6 +126,7 @@ impl Train {
         };
         self.limit(&mut config);
         let opened = Opened::new(entry, &mut config)?;
+        #[cfg(feature = "viewer")]
         if self.watch && opened.task.locomotion().is_none() {
             let why = format!("--watch shows motion matching, which `{}` is not of", entry.name);
             return Err(Unsupported(why).into());
@@ -149,12 +154,22 @@ impl Train {
             run: &run,
             device,
         };
-        let summary = match self.watch {
-            false => train(training, from, interrupted, None)?,
-            true => watched(training, |watch| train(training, from, interrupted, Some(watch)))?,
-        };
-        tell(training, &summary);
+        tell(training, &self.train(training, from, interrupted)?);
         Ok(())
+    }
+
+    fn train(
+        &self,
+        training: Training,
+        from: Option<Checkpoint>,
+        interrupted: &AtomicBool,
+    ) -> Result<Summary> {
+        let mut progress = Progress::new(training.config);
+        #[cfg(feature = "viewer")]
+        if self.watch {
+            return watched(training, from, interrupted, progress);
+        }
+        train(training, from, interrupted, &mut progress)
     }
 
     /// The configuration of a new run.
@@ -282,37 +297,6 @@ fn tell(training: Training, summary: &Summary) {
     if summary.stopped_by == "interrupt" {
         println!("go on with `footwork train {name} --resume {path}`");
     }
-}
-
-/// Trains on a thread of its own while this one, as windows want it, shows the environments.
-fn watched(
-    training: Training,
-    train: impl FnOnce(&Watch) -> Result<Summary> + Send,
-) -> Result<Summary> {
-    // Training on the CPU is drawn on what there is to draw on.
-    let gpu = match training.device {
-        Device::Gpu(gpu) => (**gpu).clone(),
-        Device::Cpu => Gpu::drawing()?,
-    };
-    let (watch, over) = (Arc::new(Watch::default()), Arc::new(AtomicBool::new(false)));
-    std::thread::scope(|scope| {
-        let running = scope.spawn(|| {
-            let summary = train(&watch);
-            over.store(true, Ordering::Relaxed);
-            summary
-        });
-        if let Some(locomotion) = training.task.locomotion() {
-            let (database, task) = (locomotion.matcher.database.clone(), locomotion.task);
-            let envs = training.config.ppo.envs;
-            let shown = window::watch(&gpu, database, task, envs, watch.clone(), over.clone());
-            if let Err(error) = shown {
-                eprintln!("note: the training goes on unwatched: {error:#}");
-            }
-        }
-        running
-            .join()
-            .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })
 }
 
 /// The first Ctrl-C asks the run to save and stop, the second ends the program.

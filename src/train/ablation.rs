@@ -3,8 +3,8 @@
 use super::checkpoint::Checkpoint;
 use super::config::Config;
 use super::evaluation::Evaluation;
-use super::figures::points;
 use super::metrics::{self, UpdateMetrics};
+use super::observer::Observer;
 use super::run_dir::RunDir;
 use super::task::{Ablation, Task, TaskEntry, Variant};
 use super::tasks::config_of;
@@ -12,7 +12,6 @@ use super::trainer::{EPISODES, Training, train};
 use crate::container::write_whole;
 use crate::env::EnvSpec;
 use crate::gpu::Device;
-use crate::report::ablation::{self, Method};
 use crate::report::table::table;
 use anyhow::{Result, bail};
 use std::path::Path;
@@ -45,7 +44,12 @@ impl Comparison<'_> {
     ///
     /// # Errors
     /// See [`train`]; or `out` holds runs of another configuration.
-    pub fn run(&self, seeds: u32, interrupted: &AtomicBool) -> Result<Option<Vec<Outcome>>> {
+    pub fn run(
+        &self,
+        seeds: u32,
+        interrupted: &AtomicBool,
+        observer: &mut (dyn Observer + Send),
+    ) -> Result<Option<Vec<Outcome>>> {
         let variants = self.ablation.variants;
         for variant in variants {
             self.entry.check(&self.configure(variant, 1))?;
@@ -56,7 +60,7 @@ impl Comparison<'_> {
             for variant in variants {
                 let path = self.out.join(format!("{}-{seed}", variant.name));
                 eprintln!("{} of {}", path.display(), variants.len() * seeds as usize);
-                match self.outcome(variant, seed, &path, interrupted)? {
+                match self.outcome(variant, seed, &path, interrupted, observer)? {
                     Some(outcome) => outcomes.push(outcome),
                     None => return Ok(None),
                 }
@@ -81,6 +85,7 @@ impl Comparison<'_> {
         seed: u32,
         path: &Path,
         interrupted: &AtomicBool,
+        observer: &mut (dyn Observer + Send),
     ) -> Result<Option<Outcome>> {
         let config = self.configure(variant, seed);
         let spec = self.entry.check(&config)?;
@@ -102,7 +107,7 @@ impl Comparison<'_> {
                 run: &run,
                 device: self.device,
             };
-            train(training, from, interrupted, None)?;
+            train(training, from, interrupted, observer)?;
         }
         if interrupted.load(Ordering::Relaxed) {
             return Ok(None);
@@ -144,14 +149,8 @@ impl Comparison<'_> {
     }
 
     fn write(&self, outcomes: &[Outcome]) -> Result<()> {
-        let of = |name: &'static str| outcomes.iter().filter(move |o| o.variant == name);
-        let methods = self.ablation.variants.iter().enumerate();
-        let methods = methods.map(|(colour, variant)| Method {
-            name: variant.name.to_string(),
-            colour,
-            seeds: of(variant.name).map(|outcome| points(&outcome.rows)).collect(),
-        });
-        ablation::draw(&self.out.join("ablation.png"), &methods.collect::<Vec<_>>())?;
+        #[cfg(feature = "report")]
+        self.draw(outcomes)?;
         for (name, text) in [
             ("ablation.txt", self.summary(outcomes)),
             ("evaluation.csv", self.evaluations(outcomes)),
@@ -160,6 +159,20 @@ impl Comparison<'_> {
             write_whole(&self.out.join(name), text.as_bytes())?;
         }
         Ok(())
+    }
+
+    #[cfg(feature = "report")]
+    fn draw(&self, outcomes: &[Outcome]) -> Result<()> {
+        use super::figures::points;
+        use crate::report::ablation::{Method, draw};
+        let of = |name: &'static str| outcomes.iter().filter(move |o| o.variant == name);
+        let methods = self.ablation.variants.iter().enumerate();
+        let methods = methods.map(|(colour, variant)| Method {
+            name: variant.name.to_string(),
+            colour,
+            seeds: of(variant.name).map(|outcome| points(&outcome.rows)).collect(),
+        });
+        Ok(draw(&self.out.join("ablation.png"), &methods.collect::<Vec<_>>())?)
     }
 
     /// A table of the variants: means over the seeds.

@@ -1,7 +1,8 @@
 //! What every update writes down: a line of `metrics.jsonl`, and TensorBoard's scalars.
 
 use super::evaluation::Evaluation;
-use crate::report::events::EventWriter;
+#[cfg(feature = "report")]
+use super::tensorboard::TensorBoard;
 use crate::rl::Iteration;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
@@ -9,7 +10,6 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
 
 /// An update.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -80,43 +80,14 @@ impl UpdateMetrics {
     pub fn rate(&self, name: &str) -> Option<f64> {
         self.named.get(name).copied().map(f64::from)
     }
-
-    /// Names and values of what TensorBoard shows.
-    fn scalars(&self) -> impl Iterator<Item = (String, f64)> {
-        let seconds = [
-            ("charts/SPS", Some(self.steps_per_s)),
-            ("time/policy_s", Some(self.policy_s)),
-            ("time/env_s", Some(self.env_s)),
-            ("time/learn_s", Some(self.learn_s)),
-            ("charts/level", self.level.map(f64::from)),
-            ("charts/success", self.success),
-            ("charts/episodic_return", self.episode_return),
-            ("charts/episodic_length", self.episode_length),
-        ];
-        let fields = seconds.into_iter().filter_map(|(tag, value)| Some((tag.to_string(), value?)));
-        fields.chain(self.named.iter().map(|(name, value)| (tag(name), f64::from(*value))))
-    }
-}
-
-/// Where TensorBoard shows a name: the tags that CleanRL made common.
-fn tag(name: &str) -> String {
-    match name {
-        "kl" => "losses/approx_kl".to_string(),
-        "clip_fraction" => "losses/clipfrac".to_string(),
-        "entropy" | "explained_variance" | "grad_norm" => format!("losses/{name}"),
-        _ if name.ends_with("_loss") => format!("losses/{name}"),
-        _ => match name.strip_prefix("evaluated_") {
-            Some(measure) => format!("evaluation/{measure}"),
-            None => format!("charts/{name}"),
-        },
-    }
 }
 
 /// Appends to a run's metrics and events.
 pub struct MetricsWriter {
     lines: File,
     path: PathBuf,
-    events: EventWriter,
+    #[cfg(feature = "report")]
+    events: TensorBoard,
 }
 
 /// The rows of a `metrics.jsonl` up to a number of steps. Lines that a crash cut short end the
@@ -149,26 +120,12 @@ impl MetricsWriter {
         crate::container::write_whole(&path, text.as_bytes())?;
         let lines = File::options().append(true).open(&path);
         let lines = lines.with_context(|| format!("cannot write {}", path.display()))?;
-        let now = unix_time();
-        let mut writer = MetricsWriter {
+        Ok(MetricsWriter {
             lines,
             path,
-            events: EventWriter::create(folder, now)?,
-        };
-        // As if the run had gone on without the pause until now.
-        let start = now - known.last().map_or(0.0, |row| row.wall_s);
-        for row in known {
-            writer.show(row, start + row.wall_s)?;
-        }
-        writer.events.flush()?;
-        Ok(writer)
-    }
-
-    fn show(&mut self, row: &UpdateMetrics, time: f64) -> Result<()> {
-        for (tag, value) in row.scalars() {
-            self.events.scalar(&tag, row.steps, time, value)?;
-        }
-        Ok(())
+            #[cfg(feature = "report")]
+            events: TensorBoard::open(folder, known)?,
+        })
     }
 
     pub fn write(&mut self, row: &UpdateMetrics) -> Result<()> {
@@ -177,14 +134,8 @@ impl MetricsWriter {
         self.lines
             .write_all(line.as_bytes())
             .with_context(|| format!("cannot write {}", self.path.display()))?;
-        self.show(row, unix_time())?;
-        self.events.flush()?;
+        #[cfg(feature = "report")]
+        self.events.write(row)?;
         Ok(())
     }
-}
-
-fn unix_time() -> f64 {
-    SystemTime::now()
-        .duration_since(UNIX_EPOCH)
-        .map_or(0.0, |since| since.as_secs_f64())
 }

@@ -6,7 +6,9 @@
 
 use super::config::{Config, ConfigError, Preset, TaskPreset};
 use super::evaluation::Evaluation;
+#[cfg(feature = "report")]
 use super::metrics::UpdateMetrics;
+#[cfg(feature = "report")]
 use super::run_dir::RunDir;
 use super::locomotion::Locomotion;
 use crate::env::{EnvBatch, EnvSpec};
@@ -102,7 +104,7 @@ pub trait Task: Send + Sync {
     /// [`Unsupported`] if the task has no such thing as is asked for.
     fn report(&self, policy: &Policy, wanted: &EvalOptions) -> Result<EvalReport>;
 
-    /// Environment steps at which a checkpoint is kept for [`Task::figures`].
+    /// Environment steps at which a checkpoint is kept for the figures.
     fn milestones(&self) -> &'static [u64] {
         &[]
     }
@@ -111,6 +113,7 @@ pub trait Task: Send + Sync {
     ///
     /// # Errors
     /// A checkpoint cannot be read, or a picture not be written.
+    #[cfg(feature = "report")]
     fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()>;
 
     /// What `play`, `render` and `--watch` show, which know motion matching alone.

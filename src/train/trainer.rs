@@ -4,19 +4,17 @@ use super::checkpoint::{Checkpoint, Header};
 use super::config::{Config, VERSION};
 use super::evaluation::Evaluation;
 use super::metrics::{self, MetricsWriter, UpdateMetrics};
-use super::progress::Progress;
+use super::observer::Observer;
 use super::run_dir::{RunDir, Summary};
 use super::state::TrainerState;
 use super::task::Task;
 use crate::env::EnvBatch;
-use crate::env::locomotion::live_view::LiveView;
 use crate::gpu::Device;
 use crate::rl::Algorithm;
 use crate::rl::ppo::PpoLearner;
 use anyhow::{Context, Result};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Episodes of an evaluation.
@@ -37,24 +35,8 @@ pub struct Training<'a> {
     pub device: &'a Device,
 }
 
-/// What there is to see for somebody who watches a training from another thread.
-#[derive(Default)]
-pub struct Watch {
-    /// The environments, once they are open; taken by who draws them.
-    pub view: Mutex<Option<LiveView>>,
-    /// The latest update.
-    pub row: Mutex<Option<UpdateMetrics>>,
-}
-
-impl Watch {
-    fn leave<T>(place: &Mutex<Option<T>>, value: T) {
-        *place.lock().unwrap_or_else(PoisonError::into_inner) = Some(value);
-    }
-}
-
 /// Trains until a limit, the wanted success or `interrupted`; with `from`, goes on where that checkpoint
-/// of the run was taken; `watch` is kept up to date for who watches. Ends by writing a checkpoint,
-/// figures and `summary.json`.
+/// of the run was taken. Ends by writing a checkpoint, figures and `summary.json`.
 ///
 /// # Errors
 /// The networks or the checkpoint do not fit, and nothing was written; or a file cannot be written, the
@@ -64,21 +46,18 @@ pub fn train(
     training: Training,
     from: Option<Checkpoint>,
     interrupted: &AtomicBool,
-    watch: Option<&Watch>,
+    observer: &mut (dyn Observer + Send),
 ) -> Result<Summary> {
     // On a thread of the pool: another would fall asleep and be woken again at every parallel part.
     rayon::scope(|_| {
         let opened = Loop::open(training, from);
         let mut state = opened.inspect_err(|_| training.run.remove_empty())?;
-        if let (Some(watch), Some(view)) = (watch, state.envs.live_view()?) {
-            Watch::leave(&watch.view, view);
-        }
-        let stopped_by = state.advance(interrupted, watch);
+        observer.opened(&mut state.envs)?;
+        let stopped_by = state.advance(interrupted, observer);
         let outcome = stopped_by.and_then(|by| {
             state.save(&training.run.checkpoint("last"))?;
             Ok(by)
         });
-        state.progress.finish();
         state.conclude(outcome)
     })
 }
@@ -91,7 +70,6 @@ struct Loop<'a> {
     state: TrainerState,
     rows: Vec<UpdateMetrics>,
     writer: MetricsWriter,
-    progress: Progress,
     /// Environment steps so far.
     steps: u64,
     /// Seconds before this process, and its start.
@@ -125,7 +103,6 @@ impl<'a> Loop<'a> {
             state,
             writer: MetricsWriter::open(run.path(), &rows)?,
             rows,
-            progress: Progress::new(config.steps, config.max_time_s),
             steps,
             earlier_s,
             start: Instant::now(),
@@ -137,7 +114,11 @@ impl<'a> Loop<'a> {
     }
 
     /// Updates until there is a reason to stop.
-    fn advance(&mut self, interrupted: &AtomicBool, watch: Option<&Watch>) -> Result<&'static str> {
+    fn advance(
+        &mut self,
+        interrupted: &AtomicBool,
+        observer: &mut dyn Observer,
+    ) -> Result<&'static str> {
         let config = self.training.config;
         loop {
             if self.steps >= config.steps {
@@ -151,12 +132,11 @@ impl<'a> Loop<'a> {
             }
             let before = self.steps;
             let mut row = self.update()?;
-            if let Some(watch) = watch {
-                Watch::leave(&watch.row, row.clone());
-            }
+            observer.updated(&row, self.state.means().unwrap_or_default());
             let reached =
                 self.crossed(config.evaluate_every, before) && self.succeeded(&mut row)?;
-            self.write_down(row)?;
+            self.writer.write(&row)?;
+            self.rows.push(row);
             self.keep(before)?;
             if reached {
                 return Ok("success");
@@ -212,13 +192,6 @@ impl<'a> Loop<'a> {
 
     fn evaluate(&self, episodes: usize) -> Result<Evaluation> {
         self.training.task.evaluate(&self.learner.policy()?, episodes)
-    }
-
-    fn write_down(&mut self, row: UpdateMetrics) -> Result<()> {
-        self.writer.write(&row)?;
-        self.progress.show(&row, self.state.means().unwrap_or_default());
-        self.rows.push(row);
-        Ok(())
     }
 
     /// Saves what this update has earned: periodic, milestone and best checkpoints.
@@ -286,6 +259,7 @@ impl<'a> Loop<'a> {
                 summary.stopped_by = by;
                 summary.evaluation = self.evaluate(EPISODES)?;
                 run.write_summary(&summary)?;
+                #[cfg(feature = "report")]
                 task.figures(run, &self.rows)?;
                 Ok(summary)
             }

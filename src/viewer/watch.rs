@@ -5,13 +5,44 @@ use super::screen::Screen;
 use crate::gpu::Gpu;
 use crate::motion::database::Database;
 use crate::train::metrics::UpdateMetrics;
-use crate::train::trainer::Watch;
 use crate::view::painter::Drawable;
 use crate::view::{Camera, Crowd, Scene};
 use crate::env::locomotion::LocomotionTask;
+use crate::env::EnvBatch;
+use crate::env::locomotion::live_view::LiveView;
+use anyhow::Result;
 use eframe::egui::{self, Ui};
 use eframe::egui_wgpu::RenderState;
-use std::sync::{Arc, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// What a training leaves for the window that shows it.
+#[derive(Default)]
+pub struct Watch {
+    /// The environments, once they are open; taken by who draws them.
+    view: Mutex<Option<LiveView>>,
+    /// The latest update.
+    row: Mutex<Option<UpdateMetrics>>,
+}
+
+impl Watch {
+    /// Takes in what there is to see of the environments.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn opened(&self, envs: &mut EnvBatch) -> Result<()> {
+        *lock(&self.view) = envs.live_view()?;
+        Ok(())
+    }
+
+    /// Takes the latest update in.
+    pub fn updated(&self, row: &UpdateMetrics) {
+        *lock(&self.row) = Some(row.clone());
+    }
+}
+
+fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 pub struct Crowded {
     database: Arc<Database>,
@@ -49,11 +80,7 @@ impl Crowded {
     pub fn show(&mut self, ui: &mut Ui) {
         self.open();
         egui::Panel::bottom("training").show(ui, |ui| {
-            let row = self
-                .watch
-                .row
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner);
+            let row = lock(&self.watch.row);
             ui.label(row.as_ref().map_or("the first update ...".into(), told));
         });
         let frame = egui::Frame::NONE;
@@ -71,12 +98,8 @@ impl Crowded {
     }
 
     fn open(&mut self) {
-        let mut view = self
-            .watch
-            .view
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        if let Some(view) = view.take() {
+        let view = lock(&self.watch.view).take();
+        if let Some(view) = view {
             let renderer = &self.screen.renderer;
             let crowd = Crowd::new(renderer, &self.database, view, &self.task, self.envs);
             self.camera.distance = 8.0 + 0.6 * crowd.side;

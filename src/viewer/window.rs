@@ -1,10 +1,9 @@
 //! Opens windows, on the device that everything else uses.
 
 use super::app::{PolicyEntry, Viewer};
-use super::watch::Crowded;
+use super::watch::{Crowded, Watch};
 use crate::gpu::Gpu;
 use crate::motion::database::Database;
-use crate::train::trainer::Watch;
 use crate::view::playthrough::PlaythroughContext;
 use crate::env::locomotion::LocomotionTask;
 use anyhow::{Context, Result, anyhow};

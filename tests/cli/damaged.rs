@@ -41,7 +41,8 @@ fn with_nan(bytes: &[u8], name: &str) -> Vec<u8> {
     let listed = header["arrays"].as_array().unwrap().iter();
     let before = listed.take_while(|array| array[0] != name);
     let at = 4 * before.map(|array| array[1].as_u64().unwrap()).sum::<u64>() as usize;
-    arrays[at..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    // Of either precision.
+    arrays[at..][..8].fill(0xff);
     seal(bytes, &header, &arrays)
 }
 

@@ -1,25 +1,21 @@
 //! The task `obstacles`: reach a target among moving obstacles, on levels of rising difficulty.
 
 use super::presets::{convolutional, fast, paper};
-use crate::env::locomotion::{LocomotionTask, Obstacles, STEP_S};
+use crate::env::locomotion::{LocomotionTask, Obstacles};
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::motion::normalise::Weights;
 use crate::nn::Policy;
-use crate::report::{learning_curve, obstacle_walks};
 use crate::rl::ppo::Ppo;
-use crate::train::checkpoint::Checkpoint;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, table, within};
 use crate::train::eval_report::{levels, levels_json};
 use crate::train::evaluation::Evaluation;
-use crate::train::figures::{level_marks, points};
 use crate::train::locomotion::{Locomotion, rollout_spec, split, with_weights};
-use crate::train::metrics::UpdateMetrics;
-use crate::train::run_dir::RunDir;
 use crate::train::task::{
     Ablation, EvalOptions, EvalReport, Loaded, Measure, Task, TaskEntry, Variant,
 };
-use crate::train::trajectories::among_obstacles;
+#[cfg(feature = "report")]
+use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 
 pub const ENTRY: TaskEntry = TaskEntry {
@@ -30,9 +26,6 @@ pub const ENTRY: TaskEntry = TaskEntry {
     load,
     ablations: &[PARTS, REWARDS],
 };
-
-/// Episodes drawn.
-const DRAWN: usize = 4;
 
 fn preset(preset: Preset) -> TaskPreset {
     let (task, ppo) = match preset {
@@ -170,14 +163,9 @@ impl Task for ObstaclesTask {
         Ok(report)
     }
 
-    /// Draws `learning_curve.png`, and `obstacle_walks.png` of the last policy.
+    #[cfg(feature = "report")]
     fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
-        let curve = run.file("learning_curve.png");
-        learning_curve::draw(&curve, &points(rows), &[], &level_marks(rows))?;
-        let policy = Checkpoint::load(&run.last()?)?.policy;
-        let Locomotion { task, matcher } = &self.locomotion;
-        let drawn = among_obstacles(&policy, matcher, *task, DRAWN)?;
-        Ok(obstacle_walks::draw(&run.file("obstacle_walks.png"), &drawn, STEP_S)?)
+        figures::obstacles::draw(run, rows, &self.locomotion)
     }
 
     fn locomotion(&self) -> Option<&Locomotion> {

@@ -6,21 +6,15 @@ use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::motion::normalise::Weights;
 use crate::nn::Policy;
-use crate::report::learning_curve::{self, Mark};
-use crate::report::trajectories::{Group, Path};
-use crate::report::{chart, trajectories as picture};
-use crate::train::checkpoint::Checkpoint;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, within};
 use crate::train::evaluate::hardest;
 use crate::train::evaluation::Evaluation;
-use crate::train::figures::points;
 use crate::train::locomotion::{Locomotion, rollout_spec, split, with_weights};
-use crate::train::metrics::UpdateMetrics;
-use crate::train::run_dir::RunDir;
 use crate::train::task::{
     EvalOptions, EvalReport, Loaded, Task, TaskEntry, Unsupported,
 };
-use crate::train::trajectories::{EpisodeTrajectory, trajectories};
+#[cfg(feature = "report")]
+use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 
 pub const ENTRY: TaskEntry = TaskEntry {
@@ -34,8 +28,6 @@ pub const ENTRY: TaskEntry = TaskEntry {
 
 /// Steps at which the paper shows its policies (figure 4).
 const MILESTONES: [u64; 4] = [20_000, 100_000, 533_000, 1_000_000];
-/// Episodes drawn for each policy.
-const DRAWN: usize = 6;
 
 fn preset(preset: Preset) -> TaskPreset {
     TaskPreset {
@@ -129,56 +121,12 @@ impl Task for PlaneTask {
         &MILESTONES
     }
 
-    /// Draws `learning_curve.png` and, once a milestone is reached, `trajectories.png`.
+    #[cfg(feature = "report")]
     fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
-        let mut reached = MILESTONES.to_vec();
-        reached.retain(|&steps| run.checkpoint_at(steps).exists());
-        let curve = run.file("learning_curve.png");
-        learning_curve::draw(&curve, &points(rows), &marks(&reached), &[])?;
-        let groups = reached.iter().enumerate();
-        let groups = groups.map(|(colour, &steps)| self.episodes(run, steps, colour));
-        let groups = groups.collect::<Result<Vec<_>>>()?;
-        match groups.is_empty() {
-            true => Ok(()),
-            false => Ok(picture::draw(&run.file("trajectories.png"), &groups)?),
-        }
+        figures::plane::draw(run, rows, &MILESTONES, &self.locomotion)
     }
 
     fn locomotion(&self) -> Option<&Locomotion> {
         Some(&self.locomotion)
     }
-}
-
-impl PlaneTask {
-    /// Episodes of the policy at a milestone.
-    fn episodes(&self, run: &RunDir, steps: u64, colour: usize) -> Result<Group> {
-        let checkpoint = Checkpoint::load(&run.checkpoint_at(steps))?;
-        let Locomotion { task, matcher } = &self.locomotion;
-        let drawn = trajectories(&checkpoint.policy, matcher, *task, DRAWN)?;
-        let path = |one: EpisodeTrajectory| Path {
-            label: match one.reached {
-                true => format!("{:.1} s", one.seconds()),
-                false => String::new(),
-            },
-            points: one.points,
-            target: one.target,
-            reached: one.reached,
-            colour,
-        };
-        Ok(Group {
-            title: format!("{} steps", chart::steps(checkpoint.header.steps as f64)),
-            paths: drawn.into_iter().map(path).collect(),
-        })
-    }
-}
-
-fn marks(reached: &[u64]) -> Vec<Mark> {
-    let marks = reached.iter().enumerate();
-    marks
-        .map(|(colour, &steps)| Mark {
-            steps,
-            label: chart::steps(steps as f64),
-            colour,
-        })
-        .collect()
 }

@@ -1,4 +1,9 @@
-//! What the tasks' figures of a run share: points of the learning curve, and marks on it.
+//! The figures of a run, a file a task, and what they share: points of the learning curve, and marks on
+//! it.
+
+pub mod obstacles;
+pub mod plane;
+pub mod trajectories;
 
 use super::metrics::UpdateMetrics;
 use crate::report::learning_curve::{Level, Point};

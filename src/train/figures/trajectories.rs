@@ -1,7 +1,7 @@
 //! Episodes of a policy, for pictures.
 
-use super::controller::Controller;
-use super::evaluate::{advance, episodes};
+use crate::train::controller::Controller;
+use crate::train::evaluate::{advance, episodes};
 use crate::kernels::locomotion::locomotion_layout::{MAPS, boxes, state_f32};
 use crate::kernels::termination;
 use crate::kernels::locomotion::rasterize_maps::cell;

@@ -1,7 +1,9 @@
 //! A live line on a terminal, a plain line now and then otherwise.
 
-use super::metrics::UpdateMetrics;
-use super::state::RecentMeans;
+use footwork::train::config::Config;
+use footwork::train::metrics::UpdateMetrics;
+use footwork::train::observer::Observer;
+use footwork::train::state::RecentMeans;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -17,10 +19,10 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// For a run that ends at `steps`, or sooner after `max_time_s` seconds.
-    pub fn new(steps: u64, max_time_s: Option<f64>) -> Self {
+    /// The progress of a training.
+    pub fn new(config: &Config) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::new(steps);
+            let bar = ProgressBar::new(config.steps);
             if let Ok(style) = ProgressStyle::with_template("{bar:24} {msg}") {
                 bar.set_style(style);
             }
@@ -29,13 +31,15 @@ impl Progress {
         Progress {
             bar,
             spoken: None,
-            steps,
-            max_time_s,
+            steps: config.steps,
+            max_time_s: config.max_time_s,
         }
     }
 
-    /// Shows an update, with means over the latest episodes.
-    pub fn show(&mut self, row: &UpdateMetrics, recent: RecentMeans) {
+}
+
+impl Observer for Progress {
+    fn updated(&mut self, row: &UpdateMetrics, recent: RecentMeans) {
         let rate = row.steps as f64 / row.wall_s.max(1e-9);
         let by_steps = self.steps.saturating_sub(row.steps) as f64 / rate.max(1e-9);
         let left = self
@@ -66,7 +70,10 @@ impl Progress {
         }
     }
 
-    pub fn finish(&self) {
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }

@@ -1,0 +1,70 @@
+//! `footwork train --watch`.
+
+use super::progress::Progress;
+use anyhow::Result;
+use footwork::env::EnvBatch;
+use footwork::gpu::{Device, Gpu};
+use footwork::train::checkpoint::Checkpoint;
+use footwork::train::metrics::UpdateMetrics;
+use footwork::train::observer::Observer;
+use footwork::train::run_dir::Summary;
+use footwork::train::state::RecentMeans;
+use footwork::train::trainer::{Training, train};
+use footwork::viewer::watch::Watch;
+use footwork::viewer::window;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Tells the terminal and the window.
+struct Both {
+    progress: Progress,
+    watch: Arc<Watch>,
+}
+
+impl Observer for Both {
+    fn opened(&mut self, envs: &mut EnvBatch) -> Result<()> {
+        self.watch.opened(envs)
+    }
+
+    fn updated(&mut self, row: &UpdateMetrics, recent: RecentMeans) {
+        self.watch.updated(row);
+        self.progress.updated(row, recent);
+    }
+}
+
+/// Trains on a thread of its own while this one, as windows want it, shows the environments.
+pub fn watched(
+    training: Training,
+    from: Option<Checkpoint>,
+    interrupted: &AtomicBool,
+    progress: Progress,
+) -> Result<Summary> {
+    // Training on the CPU is drawn on what there is to draw on.
+    let gpu = match training.device {
+        Device::Gpu(gpu) => (**gpu).clone(),
+        Device::Cpu => Gpu::drawing()?,
+    };
+    let (watch, over) = (Arc::new(Watch::default()), Arc::new(AtomicBool::new(false)));
+    let mut both = Both {
+        progress,
+        watch: watch.clone(),
+    };
+    std::thread::scope(|scope| {
+        let running = scope.spawn(|| {
+            let summary = train(training, from, interrupted, &mut both);
+            over.store(true, Ordering::Relaxed);
+            summary
+        });
+        if let Some(locomotion) = training.task.locomotion() {
+            let (database, task) = (locomotion.matcher.database.clone(), locomotion.task);
+            let envs = training.config.ppo.envs;
+            let shown = window::watch(&gpu, database, task, envs, watch, over.clone());
+            if let Err(error) = shown {
+                eprintln!("note: the training goes on unwatched: {error:#}");
+            }
+        }
+        running
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
