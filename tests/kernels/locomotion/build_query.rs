@@ -1,51 +1,30 @@
 //! Oracle: `build_query::twin`. Bar: equal bit for bit; nothing is computed.
 
-use crate::checked;
-use crate::inputs::{Draw, POISON, SEEDS, SIZES, gpu, same};
-use bytemuck::cast_slice;
-use footwork::gpu::kernel::groups;
-use footwork::gpu::{Buffer, shader};
+use crate::inputs::{Draw, SEEDS, SIZES, same};
 use footwork::kernels::locomotion::build_query;
 use footwork::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
 
 const FRAMES: usize = 500;
 
-fn agrees(envs: usize, features: &[[f32; ROW_STRIDE]], state_u32: &[u32], action: &[f32]) -> Vec<f32> {
-    let params = build_query::Params { envs: envs as u32 };
-    // One row too many: it must stay untouched.
-    let mut twin = vec![[POISON; ROW_STRIDE]; envs + 1];
-    let poison = twin.clone();
-    build_query::twin(features, state_u32, action, &mut twin, &params);
-
-    let gpu = gpu();
-    let launched = Buffer::from_slice(&gpu, poison.as_flattened());
-    build_query::launch(
-        &gpu,
-        &Buffer::from_slice(&gpu, features.as_flattened()),
-        &Buffer::from_slice(&gpu, state_u32),
-        &Buffer::from_slice(&gpu, action),
-        &launched,
-        &params,
+/// Queries of all environments, whose actions begin at `action_at`.
+fn agrees(
+    envs: usize,
+    features: &[[f32; ROW_STRIDE]],
+    state_u32: &[u32],
+    action: &[f32],
+    action_at: usize,
+) -> Vec<[f32; ROW_STRIDE]> {
+    let params = build_query::Params {
+        envs: envs as u32,
+        action_at: action_at as u32,
+    };
+    let forms = forms!(
+        build_query, BUILD_QUERY, envs, params; features, state_u32, action, out envs
     );
-    let buffers: [&[u8]; 4] = [
-        cast_slice(features),
-        cast_slice(state_u32),
-        cast_slice(action),
-        cast_slice(&poison),
-    ];
-    let checked = checked::run(
-        &shader::BUILD_QUERY,
-        groups(&shader::BUILD_QUERY, envs),
-        &buffers,
-        &params,
-    );
-    same(
-        "launched",
-        &launched.read(&gpu).expect("queries"),
-        twin.as_flattened(),
-    );
-    same("checked", &checked.of::<f32>(3), twin.as_flattened());
-    twin.as_flattened().to_vec()
+    for (form, got) in forms.shaders() {
+        same(form, got.as_flattened(), forms.twin.as_flattened());
+    }
+    forms.twin
 }
 
 #[test]
@@ -55,14 +34,15 @@ fn agrees_with_its_twin_and_the_definition() {
             let mut draw = Draw::new(seed);
             let features = draw.rows(FRAMES, 0.0);
             let (_, state_u32) = draw.state(envs, FRAMES);
-            let action = draw.normals(envs * TRAJECTORY_DIM);
-            let queries = agrees(envs, &features, &state_u32, &action);
-            for (env, row) in queries.chunks(ROW_STRIDE).take(envs).enumerate() {
+            let action_at = draw.below(3) * envs * TRAJECTORY_DIM;
+            let action = draw.normals(action_at + envs * TRAJECTORY_DIM);
+            let queries = agrees(envs, &features, &state_u32, &action, action_at);
+            let actions = action[action_at..].chunks(TRAJECTORY_DIM);
+            for (env, (row, action)) in queries.iter().zip(actions).enumerate() {
                 assert_eq!(row[..POSE_DIM], features[state_u32[env] as usize][..POSE_DIM]);
-                assert_eq!(row[POSE_DIM..FEATURE_DIM], action[env * TRAJECTORY_DIM..][..TRAJECTORY_DIM]);
+                assert_eq!(row[POSE_DIM..FEATURE_DIM], action);
                 assert_eq!(row[FEATURE_DIM], 1.0);
             }
-            assert!(queries[envs * ROW_STRIDE..].iter().all(|&q| q == POISON));
         }
     }
 }
@@ -74,5 +54,5 @@ fn passes_odd_actions_on() {
     let (_, state_u32) = draw.state(65, FRAMES);
     let odd = [0.0, -0.0, 1e-45, f32::MAX, f32::NEG_INFINITY, f32::NAN];
     let action: Vec<f32> = odd.into_iter().cycle().take(65 * TRAJECTORY_DIM).collect();
-    agrees(65, &features, &state_u32, &action);
+    agrees(65, &features, &state_u32, &action, 0);
 }
