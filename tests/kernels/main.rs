@@ -1,35 +1,19 @@
-//! Shaders against their CPU twins, twins against the paper's formulas
-//! and slow geometry, searches against an f64
-//! oracle, and whole worlds against each other. Every shader runs twice: by its own `launch` on
-//! burn's stream, unchecked as in use, and through plain wgpu with all run-time checks on.
+//! Shaders against their CPU twins, twins against the paper's formulas and slow geometry, searches against
+//! an f64 oracle. Every shader runs twice: by its own `launch` on burn's stream, unchecked as in use, and
+//! through plain wgpu with all run-time checks on.
 //! The tests need a software Vulkan adapter (lavapipe) and fail without one.
 
-mod act;
-mod batch;
+#[macro_use]
+#[path = "../support/mod.rs"]
+mod support;
+
+mod bench;
 mod bodies;
-mod ceiling;
-mod checked;
-mod collide;
 mod contact;
-mod gae;
-mod geometry;
-mod ground;
-mod hits;
-mod inputs;
-mod keep;
+mod learn;
 mod learning;
-mod observe;
-mod obstacles;
-mod oracle;
-mod paper;
-mod query;
-mod reset;
-mod reward;
+mod locomotion;
 mod rng;
-mod scatter;
 mod search;
-mod sense;
-mod step;
-mod tally;
-mod wander;
-mod world;
+
+use support::{checked, inputs, oracle};

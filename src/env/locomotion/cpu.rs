@@ -264,10 +264,8 @@ impl VecEnv for CpuLocomotion {
     }
 
     fn stats(&mut self, out: &mut Array) {
-        let mut sums = [0.0; episode_stats::SUMS];
         let params = self.params.episode_stats();
-        episode_stats::twin(&mut self.state_f32, &mut self.state_u32, &mut sums, &params);
-        out.host_mut().copy_from_slice(&sums);
+        episode_stats::twin(&mut self.state_f32, &mut self.state_u32, out.host_mut(), &params);
     }
 
     fn set_level(&mut self, level: u32) {

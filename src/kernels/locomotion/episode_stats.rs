@@ -22,7 +22,7 @@ pub fn launch(
     gpu.launch(&shader::EPISODE_STATS, [1, 1, 1], &[state_f32, state_u32, sums], params);
 }
 
-pub fn twin(state_f32: &mut [f32], state_u32: &mut [u32], sums: &mut [f32; SUMS], params: &Params) {
+pub fn twin(state_f32: &mut [f32], state_u32: &mut [u32], sums: &mut [f32], params: &Params) {
     let envs = params.envs as usize;
     let mut count = |field: usize| {
         let part = &mut state_u32[field * envs..(field + 1) * envs];
@@ -31,13 +31,13 @@ pub fn twin(state_f32: &mut [f32], state_u32: &mut [u32], sums: &mut [f32; SUMS]
         sum as f32
     };
     let returns = &mut state_f32[state_f32::RETURNS * envs..(state_f32::RETURNS + 1) * envs];
-    *sums = [
+    sums[..SUMS].copy_from_slice(&[
         count(state_u32::EPISODES),
         count(state_u32::SUCCESSES),
         count(state_u32::COLLISIONS),
         count(state_u32::TRUNCATIONS),
         count(state_u32::LENGTHS),
         returns.iter().sum(),
-    ];
+    ]);
     returns.fill(0.0);
 }

@@ -31,6 +31,7 @@ pub fn twin(boxes: &mut [f32], obstacle_velocity: &mut [f32], params: &Params) {
     let worlds = boxes.par_chunks_mut(boxes::FIELDS * count);
     worlds
         .zip(obstacle_velocity.par_chunks_mut(VELOCITY_DIM * count))
+        .take(params.envs as usize)
         .for_each(|(boxes, obstacle_velocity)| {
             // Both axes of a centre come first among a box's fields.
             for (place, velocity) in boxes.iter_mut().zip(obstacle_velocity) {

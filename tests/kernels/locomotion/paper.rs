@@ -2,20 +2,13 @@
 //! have f32 and unit vectors. Bar: 1e-5 m, 1e-5 rad, rewards within 1e-5 of themselves.
 
 use crate::inputs::Draw;
+use crate::support::database::DATABASE;
 use footwork::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, state_f32, state_u32};
 use footwork::kernels::termination;
 use footwork::kernels::locomotion::{observe, advance_and_reward};
 use footwork::motion::database::Database;
 use footwork::motion::features::{FRAMES_PER_STEP, MIN_FUTURE_FRAMES, POSE_DIM};
-use footwork::motion::normalise::Weights;
-use footwork::motion::synthetic::perform;
 use footwork::env::locomotion::Plane;
-use std::sync::LazyLock;
-
-pub static DATABASE: LazyLock<Database> = LazyLock::new(|| {
-    let (clips, roles) = perform(1, 3.0);
-    Database::build(&clips, roles, Weights::PAPER).expect("three minutes of motion")
-});
 
 const ENVS: usize = 2000;
 

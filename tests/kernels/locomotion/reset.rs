@@ -1,13 +1,10 @@
 //! Oracle: `reset::twin`; the distribution it draws is tested here too.
 //! Bar: everything equal bit for bit but the heading, a quotient of a square root: 4 roundings.
 
-use crate::checked;
-use crate::geometry::depth;
-use crate::ground::{COUNTS, Ground};
-use crate::inputs::{Draw, POISON, POISON_WHOLE, SEEDS, SIZES, close, gpu, same, within_terms};
-use bytemuck::cast_slice;
-use footwork::gpu::kernel::groups;
-use footwork::gpu::{Buffer, shader};
+use crate::support::geometry::depth;
+use crate::support::forms::Forms;
+use crate::support::ground::{COUNTS, Ground};
+use crate::inputs::{Draw, POISON, POISON_WHOLE, SEEDS, SIZES, close, same, within_terms};
 use footwork::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
 use footwork::kernels::termination;
 use footwork::kernels::locomotion::reset;
@@ -69,63 +66,18 @@ impl Case {
         self.params.envs as usize
     }
 
-    fn poison(&self) -> State {
-        (
-            vec![POISON; state_f32::FIELDS * self.envs()],
-            vec![POISON_WHOLE; state_u32::FIELDS * self.envs()],
+    fn run(&self) -> Forms<State> {
+        let envs = self.envs();
+        forms!(
+            reset, RESET, envs, self.params; self.candidates, self.termination, self.boxes,
+            out state_f32::FIELDS * envs, out state_u32::FIELDS * envs
         )
-    }
-
-    fn twin(&self) -> State {
-        let (mut state_f32, mut state_u32) = self.poison();
-        reset::twin(
-            &self.candidates,
-            &self.termination,
-            &self.boxes,
-            &mut state_f32,
-            &mut state_u32,
-            &self.params,
-        );
-        (state_f32, state_u32)
-    }
-
-    fn launch(&self) -> State {
-        let gpu = gpu();
-        let (state_f32, state_u32) = self.poison();
-        let state_f32 = Buffer::from_slice(&gpu, &state_f32);
-        let state_u32 = Buffer::from_slice(&gpu, &state_u32);
-        reset::launch(
-            &gpu,
-            &Buffer::from_slice(&gpu, &self.candidates),
-            &Buffer::from_slice(&gpu, &self.termination),
-            &Buffer::from_slice(&gpu, &self.boxes),
-            &state_f32,
-            &state_u32,
-            &self.params,
-        );
-        (
-            state_f32.read(&gpu).expect("real"),
-            state_u32.read(&gpu).expect("whole"),
-        )
-    }
-
-    fn checked(&self) -> State {
-        let (state_f32, state_u32) = self.poison();
-        let buffers: [&[u8]; 5] = [
-            cast_slice(&self.candidates),
-            cast_slice(&self.termination),
-            cast_slice(&self.boxes),
-            cast_slice(&state_f32),
-            cast_slice(&state_u32),
-        ];
-        let groups = groups(&shader::RESET, self.envs());
-        let outcome = checked::run(&shader::RESET, groups, &buffers, &self.params);
-        (outcome.of(3), outcome.of(4))
     }
 
     fn agrees(&self) -> State {
-        let twin = self.twin();
-        for (form, got) in [("launched", self.launch()), ("checked", self.checked())] {
+        let forms = self.run();
+        let twin = &forms.twin;
+        for (form, got) in forms.shaders() {
             assert_eq!(got.1, twin.1, "{form}, {:?}", self.params);
             for field in 0..state_f32::FIELDS {
                 let part = field * self.envs()..(field + 1) * self.envs();
@@ -137,7 +89,7 @@ impl Case {
                 }
             }
         }
-        twin
+        forms.twin
     }
 }
 
@@ -219,7 +171,7 @@ fn starts_and_targets_are_uniform() {
     let mut case = Case::new(ENVS, 11, |_| termination::SUCCESS);
     case.candidates = (0..100).collect();
     (case.params.candidates, case.params.initial_age_jitter) = (100, 200);
-    let (state_f32, state_u32) = case.twin();
+    let (state_f32, state_u32) = case.run().twin;
     let field = |field: usize| {
         state_f32[field * ENVS..(field + 1) * ENVS]
             .iter()

@@ -2,11 +2,8 @@
 //! n-step returns, weighted with powers of lambda, each an explicit sum of rewards.
 //! Bar: roundings of the rollout's length times the absolute sum of what is added up.
 
-use crate::checked;
-use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, gpu};
-use bytemuck::cast_slice;
-use footwork::gpu::kernel::groups;
-use footwork::gpu::{Buffer, shader};
+use crate::inputs::{Draw, SEEDS, SIZES, close};
+use crate::support::forms::Forms;
 use footwork::kernels::learn::gae;
 use footwork::kernels::termination;
 
@@ -20,25 +17,22 @@ struct Case {
     params: gae::Params,
 }
 
-/// Advantages and target values.
-type Judged = (Vec<f32>, Vec<f32>);
-
 impl Case {
-    /// Steps end where `ended(step, env)` says so. Rewards of 1000 on arrival.
-    fn new(envs: usize, steps: usize, seed: u32, termination: impl Fn(usize, usize) -> u32) -> Self {
+    /// Steps end where `termination(step, row)` says so. Rewards of 1000 on arrival.
+    fn new(rows: usize, steps: usize, seed: u32, termination: impl Fn(usize, usize) -> u32) -> Self {
         let mut draw = Draw::new(seed);
-        let samples = envs * steps;
-        let termination: Vec<u32> = (0..samples).map(|at| termination(at / envs, at % envs)).collect();
+        let samples = rows * steps;
+        let termination: Vec<u32> = (0..samples).map(|at| termination(at / rows, at % rows)).collect();
         let arrival = |&termination: &u32| if termination == termination::SUCCESS { 1000.0 } else { 0.0 };
         Case {
             reward: termination.iter().map(|e| arrival(e) + draw.normal()).collect(),
             value: draw.normals(samples),
-            next_value: draw.normals(envs),
-            final_value: draw.normals(envs),
+            next_value: draw.normals(rows),
+            final_value: draw.normals(rows),
             scale: [draw.within(300.0), 150.0 + draw.within(100.0)],
             termination,
             params: gae::Params {
-                envs: envs as u32,
+                rows: rows as u32,
                 steps: steps as u32,
                 gamma: 0.99,
                 lambda: 0.95,
@@ -52,63 +46,23 @@ impl Case {
         self.reward.len()
     }
 
-    fn poison(&self) -> Vec<f32> {
-        vec![POISON; self.samples() + 5]
+    /// Logarithms of densities, which are not looked at, and values.
+    fn log_prob_and_value(&self) -> Vec<f32> {
+        [vec![f32::NAN; self.samples()], self.value.clone()].concat()
     }
 
-    fn twin(&self) -> Judged {
-        let (mut advantage, mut target) = (self.poison(), self.poison());
-        gae::twin(
-            &self.reward,
-            &self.termination,
-            &self.value,
-            &self.next_value,
-            &self.final_value,
-            &self.scale,
-            &mut advantage,
-            &mut target,
-            &self.params,
-        );
-        (advantage, target)
-    }
-
-    fn launch(&self) -> Judged {
-        let gpu = gpu();
-        let advantage = Buffer::from_slice(&gpu, &self.poison());
-        let target = Buffer::from_slice(&gpu, &self.poison());
-        gae::launch(
-            &gpu,
-            &Buffer::from_slice(&gpu, &self.reward),
-            &Buffer::from_slice(&gpu, &self.termination),
-            &Buffer::from_slice(&gpu, &self.value),
-            &Buffer::from_slice(&gpu, &self.next_value),
-            &Buffer::from_slice(&gpu, &self.final_value),
-            &Buffer::from_slice(&gpu, &self.scale),
-            &advantage,
-            &target,
-            &self.params,
-        );
-        (
-            advantage.read(&gpu).expect("advantage"),
-            target.read(&gpu).expect("target"),
+    fn run(&self) -> Forms<Vec<f32>> {
+        forms!(
+            gae, GAE, self.params.rows as usize, self.params;
+            self.reward, self.termination, self.log_prob_and_value(), self.next_value,
+            self.final_value, self.scale, out 2 * self.samples()
         )
     }
 
-    fn checked(&self) -> Judged {
-        let poison = self.poison();
-        let buffers: [&[u8]; 8] = [
-            cast_slice(&self.reward),
-            cast_slice(&self.termination),
-            cast_slice(&self.value),
-            cast_slice(&self.next_value),
-            cast_slice(&self.final_value),
-            cast_slice(&self.scale),
-            cast_slice(&poison),
-            cast_slice(&poison),
-        ];
-        let groups = groups(&shader::GAE, self.params.envs as usize);
-        let outcome = checked::run(&shader::GAE, groups, &buffers, &self.params);
-        (outcome.of(6), outcome.of(7))
+    /// Advantage and return of the only sample.
+    fn only(&self) -> (f32, f32) {
+        let judged = self.run().twin;
+        (judged[0], judged[1])
     }
 
     fn real(&self, normalised: f32) -> f64 {
@@ -116,26 +70,26 @@ impl Case {
     }
 
     /// The value of the last real state of an episode that ended at `step`.
-    fn last(&self, step: usize, env: usize) -> f32 {
+    fn last(&self, step: usize, row: usize) -> f32 {
         match self.params.final_steps {
-            1 => self.final_value[env],
-            _ => self.final_value[step * self.params.envs as usize + env],
+            1 => self.final_value[row],
+            _ => self.final_value[step * self.params.rows as usize + row],
         }
     }
 
     /// The n-step returns from `step` on, n = 1, 2, .. to the end of episode or rollout.
-    fn returns(&self, step: usize, env: usize) -> Vec<f64> {
-        let (envs, steps) = (self.params.envs as usize, self.params.steps as usize);
+    fn returns(&self, step: usize, row: usize) -> Vec<f64> {
+        let (rows, steps) = (self.params.rows as usize, self.params.steps as usize);
         let gamma = f64::from(self.params.gamma);
         let (mut returns, mut sum) = (Vec::new(), 0.0);
         for (n, later) in (step..steps).enumerate() {
-            sum += gamma.powi(n as i32) * f64::from(self.reward[later * envs + env]);
-            let termination = self.termination[later * envs + env];
+            sum += gamma.powi(n as i32) * f64::from(self.reward[later * rows + row]);
+            let termination = self.termination[later * rows + row];
             let after = match termination {
                 _ if termination != termination::RUNNING && self.params.bootstrap & 1 << termination == 0 => 0.0,
-                _ if termination != termination::RUNNING => self.real(self.last(later, env)),
-                _ if later + 1 < steps => self.real(self.value[(later + 1) * envs + env]),
-                _ => self.real(self.next_value[env]),
+                _ if termination != termination::RUNNING => self.real(self.last(later, row)),
+                _ if later + 1 < steps => self.real(self.value[(later + 1) * rows + row]),
+                _ => self.real(self.next_value[row]),
             };
             returns.push(sum + gamma.powi(n as i32 + 1) * after);
             if termination != termination::RUNNING {
@@ -146,9 +100,9 @@ impl Case {
     }
 
     /// Sutton and Barto, Reinforcement Learning, equation 12.3.
-    fn lambda_return(&self, step: usize, env: usize) -> f64 {
+    fn lambda_return(&self, step: usize, row: usize) -> f64 {
         let lambda = f64::from(self.params.lambda);
-        let returns = self.returns(step, env);
+        let returns = self.returns(step, row);
         let (last, others) = returns.split_last().expect("at least one step");
         let weighted = others
             .iter()
@@ -157,60 +111,47 @@ impl Case {
         (1.0 - lambda) * weighted.sum::<f64>() + lambda.powi(others.len() as i32) * last
     }
 
-    fn oracle(&self) -> Judged {
-        let envs = self.params.envs as usize;
-        let (mut advantage, mut target) = (self.poison(), self.poison());
-        for at in 0..self.samples() {
-            let judged = self.lambda_return(at / envs, at % envs);
-            advantage[at] = (judged - self.real(self.value[at])) as f32;
-            target[at] = judged as f32;
-        }
-        (advantage, target)
+    /// Advantages, then returns.
+    fn oracle(&self) -> Vec<f32> {
+        let rows = self.params.rows as usize;
+        let returns = (0..self.samples()).map(|at| self.lambda_return(at / rows, at % rows));
+        let returns: Vec<f64> = returns.collect();
+        let advantages = returns.iter().zip(&self.value);
+        let advantages = advantages.map(|(of, &value)| (of - self.real(value)) as f32);
+        advantages.chain(returns.iter().map(|&of| of as f32)).collect()
     }
 
-    /// Everything an advantage of this environment may add up.
-    fn absolute(&self, env: usize) -> f32 {
-        let envs = self.params.envs as usize;
+    /// Everything an advantage of this row may add up.
+    fn absolute(&self, row: usize) -> f32 {
+        let rows = self.params.rows as usize;
         let own = |all: &[f32]| {
             all.iter()
-                .skip(env)
-                .step_by(envs)
+                .skip(row)
+                .step_by(rows)
                 .map(|v| v.abs())
                 .sum::<f32>()
         };
-        let values = own(&self.value) + self.next_value[env].abs() + own(&self.final_value);
+        let values = own(&self.value) + self.next_value[row].abs() + own(&self.final_value);
         let offsets = (self.params.steps + 2) as f32 * self.scale[0].abs();
         own(&self.reward) + values * self.scale[1] + offsets
     }
 
     fn agrees(&self) {
-        let (twin, oracle) = (self.twin(), self.oracle());
-        let (launched, checked) = (self.launch(), self.checked());
-        let bars: Vec<f32> = (0..self.params.envs as usize)
-            .map(|env| 4.0 * f32::EPSILON * self.absolute(env))
+        let oracle = self.oracle();
+        let rows = self.params.rows as usize;
+        let bars: Vec<f32> = (0..rows)
+            .map(|row| 4.0 * f32::EPSILON * self.absolute(row))
             .collect();
-        let bar = |at: usize| {
-            if at < self.samples() {
-                bars[at % bars.len()]
-            } else {
-                0.0
-            }
-        };
-        for (form, got) in [
-            ("twin", &twin),
-            ("launched", &launched),
-            ("checked", &checked),
-        ] {
-            close(form, &got.0, &oracle.0, bar);
-            close(form, &got.1, &oracle.1, bar);
+        for (form, got) in self.run().all() {
+            close(form, got, &oracle, |at| bars[at % rows]);
         }
     }
 }
 
-/// Arrivals anywhere and at most one truncation an environment, as rollouts have them.
-fn mixed(step: usize, env: usize) -> u32 {
-    match (step * 31 + env * 17) % 11 {
-        _ if step == env % 13 => termination::TRUNCATED,
+/// Arrivals anywhere and at most one truncation a row, as rollouts have them.
+fn mixed(step: usize, row: usize) -> u32 {
+    match (step * 31 + row * 17) % 11 {
+        _ if step == row % 13 => termination::TRUNCATED,
         0 => termination::SUCCESS,
         1 => termination::FAILED,
         _ => termination::RUNNING,
@@ -220,8 +161,8 @@ fn mixed(step: usize, env: usize) -> u32 {
 #[test]
 fn agrees_with_its_twin_and_the_lambda_return() {
     for seed in SEEDS {
-        for envs in SIZES {
-            Case::new(envs, 16, seed, mixed).agrees();
+        for rows in SIZES {
+            Case::new(rows, 16, seed, mixed).agrees();
         }
     }
 }
@@ -268,8 +209,8 @@ fn agrees_where_all_or_none_ends() {
 }
 
 /// Ends of all kinds, any number of each.
-fn crowded(step: usize, env: usize) -> u32 {
-    match (step * 31 + env * 17) % 7 {
+fn crowded(step: usize, row: usize) -> u32 {
+    match (step * 31 + row * 17) % 7 {
         termination @ 1..=3 => termination as u32,
         _ => termination::RUNNING,
     }
@@ -299,7 +240,6 @@ fn an_arrival_that_goes_on_is_worth_its_value() {
         case.scale = [0.0, 1.0];
         (case.params.gamma, case.params.bootstrap) = (0.5, bootstrap);
         case.agrees();
-        let (advantage, target) = case.twin();
-        assert_eq!((advantage[0], target[0]), (worth - 3.0, worth));
+        assert_eq!(case.only(), (worth - 3.0, worth));
     }
 }

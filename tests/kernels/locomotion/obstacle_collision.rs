@@ -2,13 +2,10 @@
 //! shader are both judged by it.
 //! Bar: none where no arithmetic rounds; else 1e-5 m from an edge.
 
-use crate::checked;
-use crate::geometry::{Stance, depth, right};
-use crate::ground::{COUNTS, GRAIN, Ground, SQUARE};
-use crate::inputs::{Draw, POISON_WHOLE, SIZES, gpu, places_but};
-use bytemuck::cast_slice;
-use footwork::gpu::kernel::groups;
-use footwork::gpu::{Buffer, shader};
+use crate::support::geometry::{Stance, depth, right};
+use crate::support::forms::Forms;
+use crate::support::ground::{COUNTS, GRAIN, Ground, SQUARE};
+use crate::inputs::{Draw, POISON_WHOLE, SIZES, places_but};
 use footwork::kernels::locomotion::obstacle_collision;
 use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 
@@ -41,51 +38,13 @@ impl Case {
         }
     }
 
-    fn twin(&self) -> Vec<u32> {
+    fn run(&self) -> Forms<Vec<u32>> {
         let ground = &self.ground;
-        let mut state_u32 = ground.state_u32.clone();
-        obstacle_collision::twin(
-            &self.candidates,
-            &self.matched,
-            &self.path,
-            ground.own_boxes(),
-            ground.own_drift(),
-            &ground.state_f32,
-            &mut state_u32,
-            &self.params,
-        );
-        state_u32
-    }
-
-    fn launch(&self) -> Vec<u32> {
-        let gpu = gpu();
-        let state_u32 = Buffer::from_slice(&gpu, &self.ground.state_u32);
-        obstacle_collision::launch(
-            &gpu,
-            &Buffer::from_slice(&gpu, &self.candidates),
-            &Buffer::from_slice(&gpu, &self.matched),
-            &Buffer::from_slice(&gpu, self.path.as_flattened()),
-            &Buffer::from_slice(&gpu, &self.ground.boxes),
-            &Buffer::from_slice(&gpu, &self.ground.obstacle_velocity),
-            &Buffer::from_slice(&gpu, &self.ground.state_f32),
-            &state_u32,
-            &self.params,
-        );
-        state_u32.read(&gpu).expect("whole")
-    }
-
-    fn checked(&self) -> Vec<u32> {
-        let buffers: [&[u8]; 7] = [
-            cast_slice(&self.candidates),
-            cast_slice(&self.matched),
-            cast_slice(&self.path),
-            cast_slice(&self.ground.boxes),
-            cast_slice(&self.ground.obstacle_velocity),
-            cast_slice(&self.ground.state_f32),
-            cast_slice(&self.ground.state_u32),
-        ];
-        let groups = groups(&shader::OBSTACLE_COLLISION, self.ground.envs);
-        checked::run(&shader::OBSTACLE_COLLISION, groups, &buffers, &self.params).of(6)
+        forms!(
+            obstacle_collision, OBSTACLE_COLLISION, ground.envs, self.params;
+            self.candidates, self.matched, self.path, ground.boxes, ground.obstacle_velocity,
+            ground.state_f32, mut ground.state_u32
+        )
     }
 
     /// How deep the character gets into an obstacle.
@@ -113,21 +72,16 @@ impl Case {
     fn agrees(&self) -> Vec<u32> {
         let envs = self.ground.envs;
         let written = state_u32::HAS_COLLIDED * envs..(state_u32::HAS_COLLIDED + 1) * envs;
-        let twin = self.twin();
-        let (launched, checked) = (self.launch(), self.checked());
+        let forms = self.run();
         let depths: Vec<f64> = (0..envs).map(|env| self.depth(env)).collect();
-        for (form, got) in [
-            ("twin", &twin),
-            ("launched", &launched),
-            ("checked", &checked),
-        ] {
+        for (form, got) in forms.all() {
             assert!(places_but(&written, got).eq(places_but(&written, &self.ground.state_u32)));
             for (env, (&struck, &depth)) in got[written.clone()].iter().zip(&depths).enumerate() {
                 let fits = struck < 2 && right(struck == 1, depth, self.ground.bar());
                 assert!(fits, "{form}: environment {env}: {struck}, {depth:e} m");
             }
         }
-        twin[written].to_vec()
+        forms.twin[written].to_vec()
     }
 }
 

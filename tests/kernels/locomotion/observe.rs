@@ -1,11 +1,7 @@
 //! Oracle: `observe::twin`.
 //! Bar: the pose is a copy; the goal, two products a number, within 4 roundings of the larger.
 
-use crate::checked;
-use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, gpu, same, within_terms};
-use bytemuck::cast_slice;
-use footwork::gpu::kernel::groups;
-use footwork::gpu::{Buffer, shader};
+use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, same, within_terms};
 use footwork::kernels::locomotion::locomotion_layout::{CELLS, BASE_OBS_DIM, TARGET_SCALE, MAP_WORDS, MAPS, MAP_OBS_DIM, state_f32};
 use footwork::kernels::termination;
 use footwork::kernels::locomotion::observe;
@@ -70,55 +66,6 @@ impl Case {
         self.params.envs as usize
     }
 
-    /// One row too many: it must stay untouched.
-    fn poison(&self) -> Vec<f32> {
-        vec![POISON; (self.params.to as usize + self.envs() + 1) * self.width()]
-    }
-
-    fn twin(&self) -> Vec<f32> {
-        let mut observation = self.poison();
-        observe::twin(
-            &self.features,
-            &self.state_f32,
-            &self.state_u32,
-            &self.termination,
-            &self.maps,
-            &mut observation,
-            &self.params,
-        );
-        observation
-    }
-
-    fn launch(&self) -> Vec<f32> {
-        let gpu = gpu();
-        let observation = Buffer::from_slice(&gpu, &self.poison());
-        observe::launch(
-            &gpu,
-            &Buffer::from_slice(&gpu, self.features.as_flattened()),
-            &Buffer::from_slice(&gpu, &self.state_f32),
-            &Buffer::from_slice(&gpu, &self.state_u32),
-            &Buffer::from_slice(&gpu, &self.termination),
-            &Buffer::from_slice(&gpu, &self.maps),
-            &observation,
-            &self.params,
-        );
-        observation.read(&gpu).expect("observation")
-    }
-
-    fn checked(&self) -> Vec<f32> {
-        let poison = self.poison();
-        let buffers: [&[u8]; 6] = [
-            cast_slice(&self.features),
-            cast_slice(&self.state_f32),
-            cast_slice(&self.state_u32),
-            cast_slice(&self.termination),
-            cast_slice(&self.maps),
-            cast_slice(&poison),
-        ];
-        let groups = groups(&shader::OBSERVE, self.envs() * self.params.rows as usize);
-        checked::run(&shader::OBSERVE, groups, &buffers, &self.params).of(5)
-    }
-
     /// The larger of a goal's products.
     fn largest(&self, env: usize) -> f32 {
         let at = |field: usize| self.state_f32[field * self.envs() + env];
@@ -128,9 +75,15 @@ impl Case {
     }
 
     fn agrees(&self) -> Vec<f32> {
-        let twin = self.twin();
-        for (form, got) in [("launched", self.launch()), ("checked", self.checked())] {
-            let rows = got.chunks(self.width()).zip(twin.chunks(self.width()));
+        let invocations = self.envs() * self.params.rows as usize;
+        // One row too many: it must stay untouched.
+        let numbers = (self.params.to as usize + self.envs() + 1) * self.width();
+        let forms = forms!(
+            observe, OBSERVE, invocations, self.params;
+            self.features, self.state_f32, self.state_u32, self.termination, self.maps, out numbers
+        );
+        for (form, got) in forms.shaders() {
+            let rows = got.chunks(self.width()).zip(forms.twin.chunks(self.width()));
             for (row, (got, want)) in rows.enumerate() {
                 same(form, &got[..POSE_DIM], &want[..POSE_DIM]);
                 close(form, &got[POSE_DIM..BASE_OBS_DIM], &want[POSE_DIM..BASE_OBS_DIM], |_| {
@@ -140,7 +93,7 @@ impl Case {
                 same(form, &got[BASE_OBS_DIM..], &want[BASE_OBS_DIM..]);
             }
         }
-        twin
+        forms.twin
     }
 }
 

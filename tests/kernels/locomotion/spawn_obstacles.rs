@@ -1,11 +1,7 @@
 //! Oracle: `spawn_obstacles::twin`; the distribution it draws is tested here too.
 //! Bar: boxes equal bit for bit; velocities, a quotient of a square root, within 4 roundings.
 
-use crate::checked;
-use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, gpu, same, within_terms};
-use bytemuck::cast_slice;
-use footwork::gpu::kernel::groups;
-use footwork::gpu::{Buffer, shader};
+use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, same, within_terms};
 use footwork::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, boxes};
 use footwork::kernels::termination;
 use footwork::kernels::locomotion::spawn_obstacles;
@@ -51,51 +47,19 @@ impl Case {
         (self.params.envs * self.params.count) as usize
     }
 
-    fn poison(&self) -> Drawn {
-        let poison = |fields: usize| vec![POISON; self.obstacles() * fields + 5];
-        (poison(boxes::FIELDS), poison(VELOCITY_DIM))
-    }
-
-    fn twin(&self) -> Drawn {
-        let (mut boxes, mut obstacle_velocity) = self.poison();
-        spawn_obstacles::twin(&self.termination, &mut boxes, &mut obstacle_velocity, &self.params);
-        (boxes, obstacle_velocity)
-    }
-
-    fn launch(&self) -> Drawn {
-        let gpu = gpu();
-        let (boxes, obstacle_velocity) = self.poison();
-        let boxes = Buffer::from_slice(&gpu, &boxes);
-        let obstacle_velocity = Buffer::from_slice(&gpu, &obstacle_velocity);
-        let termination = Buffer::from_slice(&gpu, &self.termination);
-        spawn_obstacles::launch(&gpu, &termination, &boxes, &obstacle_velocity, &self.params);
-        (
-            boxes.read(&gpu).expect("boxes"),
-            obstacle_velocity.read(&gpu).expect("drift"),
-        )
-    }
-
-    fn checked(&self) -> Drawn {
-        let (boxes, obstacle_velocity) = self.poison();
-        let buffers: [&[u8]; 3] = [
-            cast_slice(&self.termination),
-            cast_slice(&boxes),
-            cast_slice(&obstacle_velocity),
-        ];
-        let groups = groups(&shader::SPAWN_OBSTACLES, self.obstacles());
-        let outcome = checked::run(&shader::SPAWN_OBSTACLES, groups, &buffers, &self.params);
-        (outcome.of(1), outcome.of(2))
-    }
-
     fn agrees(&self) -> Vec<Obstacle> {
-        let twin = self.twin();
-        for (form, got) in [("launched", self.launch()), ("checked", self.checked())] {
-            same(form, &got.0, &twin.0);
-            close(form, &got.1, &twin.1, |_| {
+        let obstacles = self.obstacles();
+        let forms = forms!(
+            spawn_obstacles, SPAWN_OBSTACLES, obstacles, self.params; self.termination,
+            out obstacles * boxes::FIELDS, out obstacles * VELOCITY_DIM
+        );
+        for (form, got) in forms.shaders() {
+            same(form, &got.0, &forms.twin.0);
+            close(form, &got.1, &forms.twin.1, |_| {
                 within_terms(&[self.params.speed])
             });
         }
-        self.read(&twin)
+        self.read(&forms.twin)
     }
 
     fn read(&self, (all, obstacle_velocity): &Drawn) -> Vec<Obstacle> {
@@ -194,7 +158,7 @@ fn boxes_that_find_no_place_stand_in_the_corner() {
 fn many(speed_min: f32) -> Vec<Obstacle> {
     let mut case = Case::new(300, 100, 11, |_| termination::TRUNCATED);
     case.params.speed_min = speed_min;
-    case.read(&case.twin())
+    case.agrees()
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {

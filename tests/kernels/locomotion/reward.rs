@@ -2,7 +2,7 @@
 //! Bar: 1e-5 of the terms' sum; ends and counts equal.
 
 use crate::inputs::Draw;
-use crate::paper::DATABASE;
+use crate::support::database::DATABASE;
 use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 use footwork::kernels::termination;
 use footwork::kernels::locomotion::advance_and_reward;

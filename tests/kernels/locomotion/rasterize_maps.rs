@@ -1,13 +1,9 @@
 //! Oracle: cell centres and boxes in f64, see `geometry`; twin and shader are both judged by it.
 //! Bar: none where no arithmetic rounds but that of a cell to its byte; else 1e-5 m.
 
-use crate::checked;
-use crate::geometry::{Obstacle, depth, right};
-use crate::ground::{COUNTS, Ground, SQUARE};
-use crate::inputs::{Draw, SEEDS, gpu};
-use bytemuck::cast_slice;
-use footwork::gpu::kernel::groups;
-use footwork::gpu::{Buffer, shader};
+use crate::support::geometry::{Obstacle, depth, right};
+use crate::support::ground::{COUNTS, Ground, SQUARE};
+use crate::inputs::{Draw, SEEDS};
 use footwork::kernels::locomotion::locomotion_layout::{CELLS, FULL, MAP_WORDS, boxes, state_f32, state_u32};
 use footwork::kernels::locomotion::rasterize_maps::{self, cell};
 
@@ -35,7 +31,7 @@ impl Case {
     fn new(ground: Ground, just_reset: bool, [edge, back]: [f32; 2]) -> Self {
         let mut draw = Draw::new(1);
         let mut case = Case {
-            maps: (0..ground.envs * MAP_WORDS + 5)
+            maps: (0..ground.envs * MAP_WORDS)
                 .map(|_| draw.bits()[0])
                 .collect(),
             params: rasterize_maps::Params {
@@ -54,58 +50,16 @@ impl Case {
         case
     }
 
-    fn twin(&self) -> Vec<u32> {
-        let mut maps = self.maps.clone();
-        let ground = &self.ground;
-        rasterize_maps::twin(
-            ground.own_boxes(),
-            ground.own_drift(),
-            &ground.state_f32,
-            &ground.state_u32,
-            &mut maps,
-            &self.params,
-        );
-        maps
-    }
-
-    fn launch(&self) -> Vec<u32> {
-        let gpu = gpu();
-        let maps = Buffer::from_slice(&gpu, &self.maps);
-        rasterize_maps::launch(
-            &gpu,
-            &Buffer::from_slice(&gpu, &self.ground.boxes),
-            &Buffer::from_slice(&gpu, &self.ground.obstacle_velocity),
-            &Buffer::from_slice(&gpu, &self.ground.state_f32),
-            &Buffer::from_slice(&gpu, &self.ground.state_u32),
-            &maps,
-            &self.params,
-        );
-        maps.read(&gpu).expect("maps")
-    }
-
-    fn checked(&self) -> Vec<u32> {
-        let buffers: [&[u8]; 5] = [
-            cast_slice(&self.ground.boxes),
-            cast_slice(&self.ground.obstacle_velocity),
-            cast_slice(&self.ground.state_f32),
-            cast_slice(&self.ground.state_u32),
-            cast_slice(&self.maps),
-        ];
-        let groups = groups(&shader::RASTERIZE_MAPS, self.ground.envs * CELLS);
-        checked::run(&shader::RASTERIZE_MAPS, groups, &buffers, &self.params).of(4)
-    }
-
     fn agrees(&self) -> Vec<u32> {
-        let twin = self.twin();
-        let (launched, checked) = (self.launch(), self.checked());
-        for (form, got) in [
-            ("twin", &twin),
-            ("launched", &launched),
-            ("checked", &checked),
-        ] {
+        let ground = &self.ground;
+        let forms = forms!(
+            rasterize_maps, RASTERIZE_MAPS, ground.envs * CELLS, self.params;
+            ground.boxes, ground.obstacle_velocity, ground.state_f32, ground.state_u32, mut self.maps
+        );
+        for (form, got) in forms.all() {
             self.judge(form, got);
         }
-        twin
+        forms.twin
     }
 
     fn judge(&self, form: &str, got: &[u32]) {

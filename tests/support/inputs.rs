@@ -1,4 +1,4 @@
-//! Random and poisoned inputs, and the comparisons every test of this binary uses.
+//! Random and poisoned inputs, and comparisons.
 
 use footwork::gpu::Gpu;
 use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
@@ -10,7 +10,7 @@ use std::ops::Range;
 /// What outputs hold before a kernel runs: what it leaves unwritten, or writes where it must not,
 /// shows.
 pub const POISON: f32 = -12345.0;
-pub const POISON_WHOLE: u32 = -12345i32 as u32;
+pub const POISON_WHOLE: u32 = POISON.to_bits();
 
 /// Batch sizes around the workgroup's 64 invocations.
 pub const SIZES: [usize; 5] = [1, 63, 64, 65, 1000];

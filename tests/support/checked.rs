@@ -51,7 +51,7 @@ impl Outcome {
 pub fn run<P: Pod>(
     shader: &'static Shader,
     groups: [u32; 3],
-    buffers: &[&[u8]],
+    buffers: &[impl AsRef<[u8]>],
     params: &P,
 ) -> Outcome {
     assert_eq!(buffers.len(), shader.buffers as usize, "{}", shader.name);
@@ -98,12 +98,13 @@ impl Checked {
         &mut self,
         shader: &'static Shader,
         [x, y, z]: [u32; 3],
-        buffers: &[&[u8]],
+        buffers: &[impl AsRef<[u8]>],
         params: &[u8],
     ) -> Outcome {
         let pipeline = self.pipeline(shader);
         let storage = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
-        let mut bound: Vec<_> = buffers.iter().map(|b| self.buffer(b, storage)).collect();
+        let storage = |bytes: &[u8]| self.buffer(bytes, storage);
+        let mut bound: Vec<_> = buffers.iter().map(|b| storage(b.as_ref())).collect();
         if !params.is_empty() {
             bound.push(self.buffer(params, BufferUsages::UNIFORM));
         }
@@ -146,7 +147,7 @@ impl Checked {
         }
         self.device
             .poll(wgpu::PollType::wait_indefinitely())
-            .expect("the device answers");
+            .expect("a device that works");
         let read = |copy: &wgpu::Buffer| copy.get_mapped_range(..).expect("mapped").to_vec();
         Outcome(copies.iter().map(read).collect())
     }

@@ -2,13 +2,9 @@
 //! Bar: 4 roundings of the way and the square's circumference; a velocity's sign may differ only
 //! that near to a wall. What no arithmetic rounds is equal bit for bit.
 
-use crate::checked;
-use crate::geometry::bounced;
-use crate::ground::{COUNTS, Ground, SQUARE};
-use crate::inputs::{Draw, SIZES, gpu, same};
-use bytemuck::cast_slice;
-use footwork::gpu::kernel::groups;
-use footwork::gpu::{Buffer, shader};
+use crate::support::geometry::bounced;
+use crate::support::ground::{COUNTS, Ground, SQUARE};
+use crate::inputs::{Draw, SIZES, same};
 use footwork::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, boxes};
 use footwork::kernels::locomotion::obstacles::bounce;
 use footwork::kernels::locomotion::move_obstacles;
@@ -33,42 +29,14 @@ impl Case {
         }
     }
 
-    fn twin(&self) -> Moved {
-        let (mut boxes, mut obstacle_velocity) = (self.ground.boxes.clone(), self.ground.obstacle_velocity.clone());
-        let own = (self.ground.own_boxes().len(), self.ground.own_drift().len());
-        move_obstacles::twin(&mut boxes[..own.0], &mut obstacle_velocity[..own.1], &self.params);
-        (boxes, obstacle_velocity)
-    }
-
-    fn launch(&self) -> Moved {
-        let gpu = gpu();
-        let boxes = Buffer::from_slice(&gpu, &self.ground.boxes);
-        let obstacle_velocity = Buffer::from_slice(&gpu, &self.ground.obstacle_velocity);
-        move_obstacles::launch(&gpu, &boxes, &obstacle_velocity, &self.params);
-        (
-            boxes.read(&gpu).expect("boxes"),
-            obstacle_velocity.read(&gpu).expect("drift"),
-        )
-    }
-
-    fn checked(&self) -> Moved {
-        let buffers: [&[u8]; 2] = [
-            cast_slice(&self.ground.boxes),
-            cast_slice(&self.ground.obstacle_velocity),
-        ];
-        let groups = groups(&shader::MOVE_OBSTACLES, self.ground.envs * self.ground.count);
-        let outcome = checked::run(&shader::MOVE_OBSTACLES, groups, &buffers, &self.params);
-        (outcome.of(0), outcome.of(1))
-    }
-
     fn agrees(&self) {
-        let forms = [
-            ("twin", self.twin()),
-            ("launched", self.launch()),
-            ("checked", self.checked()),
-        ];
-        for (form, moved) in forms {
-            self.judge(form, &moved);
+        let ground = &self.ground;
+        let forms = forms!(
+            move_obstacles, MOVE_OBSTACLES, ground.envs * ground.count, self.params;
+            mut ground.boxes, mut ground.obstacle_velocity
+        );
+        for (form, moved) in forms.all() {
+            self.judge(form, moved);
         }
     }
 

@@ -1,13 +1,10 @@
 //! Oracle: the asked-for positions in f64, see `geometry`; twin and shader are both judged by it.
 //! Bar: none where no arithmetic rounds; else 1e-5 m from an edge.
 
-use crate::checked;
-use crate::geometry::{depth, right};
-use crate::ground::{COUNTS, GRAIN, Ground};
-use crate::inputs::{Draw, POISON_WHOLE, SIZES, gpu, places_but};
-use bytemuck::cast_slice;
-use footwork::gpu::kernel::groups;
-use footwork::gpu::{Buffer, shader};
+use crate::support::geometry::{depth, right};
+use crate::support::forms::Forms;
+use crate::support::ground::{COUNTS, GRAIN, Ground};
+use crate::inputs::{Draw, POISON, POISON_WHOLE, SIZES, places_but};
 use footwork::kernels::locomotion::hits;
 use footwork::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
 use footwork::motion::features::TRAJECTORY_DIM;
@@ -36,58 +33,29 @@ impl Case {
             away * normal[TRAJECTORY_DIM + i % TRAJECTORY_DIM]
         };
         let numbers = ground.envs * TRAJECTORY_DIM;
-        let action = (0..numbers).map(|i| asked(i, &mut draw)).collect();
+        // Those of steps before, which are not looked at.
+        let action_at = draw.below(3) * numbers;
+        let mut action = vec![POISON; action_at];
+        action.extend((0..numbers).map(|i| asked(i, &mut draw)));
         ground.state_u32[state_u32::HITS * ground.envs..][..ground.envs].fill(POISON_WHOLE);
         Case {
             action,
             normal,
             params: hits::Params {
                 envs: ground.envs as u32,
+                action_at: action_at as u32,
                 count: ground.count as u32,
             },
             ground,
         }
     }
 
-    fn twin(&self) -> Vec<u32> {
+    fn run(&self) -> Forms<Vec<u32>> {
         let ground = &self.ground;
-        let mut state_u32 = ground.state_u32.clone();
-        hits::twin(
-            &self.action,
-            &self.normal,
-            ground.own_boxes(),
-            &ground.state_f32,
-            &mut state_u32,
-            &self.params,
-        );
-        state_u32
-    }
-
-    fn launch(&self) -> Vec<u32> {
-        let gpu = gpu();
-        let state_u32 = Buffer::from_slice(&gpu, &self.ground.state_u32);
-        hits::launch(
-            &gpu,
-            &Buffer::from_slice(&gpu, &self.action),
-            &Buffer::from_slice(&gpu, &self.normal),
-            &Buffer::from_slice(&gpu, &self.ground.boxes),
-            &Buffer::from_slice(&gpu, &self.ground.state_f32),
-            &state_u32,
-            &self.params,
-        );
-        state_u32.read(&gpu).expect("whole")
-    }
-
-    fn checked(&self) -> Vec<u32> {
-        let buffers: [&[u8]; 5] = [
-            cast_slice(&self.action),
-            cast_slice(&self.normal),
-            cast_slice(&self.ground.boxes),
-            cast_slice(&self.ground.state_f32),
-            cast_slice(&self.ground.state_u32),
-        ];
-        let groups = groups(&shader::HITS, self.ground.envs);
-        checked::run(&shader::HITS, groups, &buffers, &self.params).of(4)
+        forms!(
+            hits, HITS, ground.envs, self.params;
+            self.action, self.normal, ground.boxes, ground.state_f32, mut ground.state_u32
+        )
     }
 
     /// How deep each of the three positions lies in an obstacle.
@@ -96,7 +64,7 @@ impl Case {
         [0, 4, 8].map(|x| {
             let [left, ahead] = [x, x + 1].map(|i| {
                 let [action, scale, mean] = [
-                    self.action[env * TRAJECTORY_DIM + i],
+                    self.action[self.params.action_at as usize + env * TRAJECTORY_DIM + i],
                     self.normal[TRAJECTORY_DIM + i],
                     self.normal[i],
                 ]
@@ -110,13 +78,8 @@ impl Case {
     fn agrees(&self) -> Vec<u32> {
         let envs = self.ground.envs;
         let written = state_u32::HITS * envs..(state_u32::HITS + 1) * envs;
-        let twin = self.twin();
-        let (launched, checked) = (self.launch(), self.checked());
-        for (form, got) in [
-            ("twin", &twin),
-            ("launched", &launched),
-            ("checked", &checked),
-        ] {
+        let forms = self.run();
+        for (form, got) in forms.all() {
             assert!(places_but(&written, got).eq(places_but(&written, &self.ground.state_u32)));
             for (env, &hits) in got[written.clone()].iter().enumerate() {
                 let depths = self.depths(env);
@@ -129,7 +92,7 @@ impl Case {
                 assert!(fits, "{form}: environment {env}: {hits} hits, {depths:?}");
             }
         }
-        twin[written].to_vec()
+        forms.twin[written].to_vec()
     }
 }
 

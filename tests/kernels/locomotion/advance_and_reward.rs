@@ -3,13 +3,9 @@
 //! terms, as a compiler may fuse a product into a sum; rewards within 8 + 4 d units in the last
 //! place at distance d, twice what WGSL grants exp(-d), and the roundings of the distance.
 
-use crate::checked;
 use crate::inputs::{
-    Draw, POISON, POISON_WHOLE, SEEDS, SIZES, close, gpu, places_but, same, within_terms,
+    Draw, POISON, POISON_WHOLE, SEEDS, SIZES, close, places_but, same, within_terms,
 };
-use bytemuck::cast_slice;
-use footwork::gpu::kernel::groups;
-use footwork::gpu::{Buffer, shader};
 use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 use footwork::kernels::termination;
 use footwork::kernels::locomotion::advance_and_reward;
@@ -78,71 +74,23 @@ impl Case {
         self.state.state_u32[field * envs..][..envs].fill(value);
     }
 
-    fn twin(&self) -> State {
-        let mut state = self.state.clone();
-        advance_and_reward::twin(
-            &self.candidates,
-            &self.matched,
-            &self.motion,
-            &mut state.state_f32,
-            &mut state.state_u32,
-            &mut state.reward,
-            &mut state.termination,
-            &self.params,
-        );
-        state
-    }
-
-    fn launch(&self) -> State {
-        let gpu = gpu();
-        let state_f32 = Buffer::from_slice(&gpu, &self.state.state_f32);
-        let state_u32 = Buffer::from_slice(&gpu, &self.state.state_u32);
-        let reward = Buffer::from_slice(&gpu, &self.state.reward);
-        let termination = Buffer::from_slice(&gpu, &self.state.termination);
-        advance_and_reward::launch(
-            &gpu,
-            &Buffer::from_slice(&gpu, &self.candidates),
-            &Buffer::from_slice(&gpu, &self.matched),
-            &Buffer::from_slice(&gpu, cast_slice(&self.motion)),
-            &state_f32,
-            &state_u32,
-            &reward,
-            &termination,
-            &self.params,
-        );
-        State {
-            state_f32: state_f32.read(&gpu).expect("real"),
-            state_u32: state_u32.read(&gpu).expect("whole"),
-            reward: reward.read(&gpu).expect("reward"),
-            termination: termination.read(&gpu).expect("ended"),
-        }
-    }
-
-    fn checked(&self) -> State {
-        let buffers: [&[u8]; 7] = [
-            cast_slice(&self.candidates),
-            cast_slice(&self.matched),
-            cast_slice(&self.motion),
-            cast_slice(&self.state.state_f32),
-            cast_slice(&self.state.state_u32),
-            cast_slice(&self.state.reward),
-            cast_slice(&self.state.termination),
-        ];
-        let groups = groups(&shader::ADVANCE_AND_REWARD, self.envs());
-        let outcome = checked::run(&shader::ADVANCE_AND_REWARD, groups, &buffers, &self.params);
-        State {
-            state_f32: outcome.of(3),
-            state_u32: outcome.of(4),
-            reward: outcome.of(5),
-            termination: outcome.of(6),
-        }
-    }
-
     fn agrees(&self) -> State {
-        let twin = self.twin();
-        self.compare("launched", &self.launch(), &twin);
-        self.compare("checked", &self.checked(), &twin);
-        twin
+        let State { state_f32, state_u32, reward, termination } = &self.state;
+        let forms = forms!(
+            advance_and_reward, ADVANCE_AND_REWARD, self.envs(), self.params;
+            self.candidates, self.matched, self.motion,
+            mut state_f32, mut state_u32, mut reward, mut termination
+        );
+        let forms = forms.map(|(state_f32, state_u32, reward, termination)| State {
+            state_f32,
+            state_u32,
+            reward,
+            termination,
+        });
+        for (form, got) in forms.shaders() {
+            self.compare(form, got, &forms.twin);
+        }
+        forms.twin
     }
 
     /// What a reward may differ by where the way to the target differs by `blur`.

@@ -1,0 +1,3 @@
+//! What measures a device.
+
+mod roofline;

@@ -1,0 +1,11 @@
+//! What several test binaries share.
+#![allow(dead_code, reason = "each binary uses a part of it")]
+
+pub mod checked;
+#[macro_use]
+pub mod forms;
+pub mod database;
+pub mod geometry;
+pub mod ground;
+pub mod inputs;
+pub mod oracle;
