@@ -18,13 +18,17 @@ use crate::gpu::Array;
 use layers::is_wide;
 use rayon::prelude::*;
 
-/// Rows taken through a narrow network together, and through one with wide layers.
+/// Rows evaluated together.
+const FORWARD_ROWS: usize = 64;
+/// Rows taken through a narrow network and back together, and through one with wide layers.
 const CHUNK_ROWS: usize = 32;
-const WIDE_CHUNK_ROWS: usize = 256;
+const WIDE_CHUNK_ROWS: usize = 128;
 /// Splits of a batch of which each has gradients of its own: more would spend more time adding them.
 const GRAD_SPLITS: usize = 8;
+/// Rows of which wide layers keep what they see until their gradients are summed.
+const BLOCK_ROWS: usize = 2048;
 /// Inputs of a wide layer whose weights' gradients are summed together.
-const WIDE_INPUTS: usize = 32;
+const WIDE_INPUTS: usize = 128;
 
 /// Networks over one flat vector, on the CPU.
 pub struct CpuEngine {
@@ -98,10 +102,9 @@ impl CpuEngine {
 
 /// Writes the outputs `[n][outputs]` for observations `[n][observation]`, on all cores.
 pub fn forward(network: &Network, flat: &[f32], observations: &[f32], out: &mut [f32]) {
-    let (rows, outputs) = (chunk_rows(network), network.outputs());
-    let width = network.observation().dim();
-    let chunks = observations.par_chunks(rows * width);
-    let chunks = chunks.zip(out.par_chunks_mut(rows * outputs));
+    let (width, outputs) = (network.observation().dim(), network.outputs());
+    let chunks = observations.par_chunks(FORWARD_ROWS * width);
+    let chunks = chunks.zip(out.par_chunks_mut(FORWARD_ROWS * outputs));
     chunks.for_each(|(observations, out)| {
         let rows: Vec<&[f32]> = observations.chunks_exact(width).collect();
         let (_, outputs) = Pass::new(network, flat, &rows);
@@ -140,9 +143,8 @@ impl Minibatch<'_> {
     /// Writes the gradient of a network's parameters. Returns the extras.
     fn gradient(&self, number: usize, network: &Network, gradient: &mut [f32]) -> Vec<f32> {
         let chunk = chunk_rows(network);
-        // Wide layers keep what they see of a block of rows until their gradients are summed.
         let (block, split) = match chunk {
-            WIDE_CHUNK_ROWS => (GRAD_SPLITS * chunk, chunk),
+            WIDE_CHUNK_ROWS => (BLOCK_ROWS, chunk),
             _ => (self.rows.len(), self.rows.len().div_ceil(GRAD_SPLITS)),
         };
         let layers = network.layers().iter();
