@@ -50,7 +50,9 @@ fn maps(name: &'static str, stride: usize) -> Case {
 }
 
 fn normal(len: usize) -> Vec<f32> {
-    (0..len as u32).map(|i| gaussian(random4(1, i, 0, 0))).collect()
+    (0..len as u32)
+        .map(|i| gaussian(random4(1, i, 0, 0)))
+        .collect()
 }
 
 fn network(criterion: &mut Criterion) {

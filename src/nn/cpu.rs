@@ -118,7 +118,9 @@ fn chunk_rows(network: &Network) -> usize {
 }
 
 fn add(sums: &mut [f32], values: &[f32]) {
-    sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+    sums.iter_mut()
+        .zip(values)
+        .for_each(|(sum, value)| *sum += value);
 }
 
 /// What the gradient is taken of.
@@ -156,7 +158,9 @@ impl Minibatch<'_> {
             let splits = rows.par_chunks(split.max(1));
             let splits = splits.map(|rows| self.split(number, network, &transposed, chunk, rows));
             let splits: Vec<Split> = splits.collect();
-            splits.iter().for_each(|split| add(&mut extras, &split.extras));
+            splits
+                .iter()
+                .for_each(|split| add(&mut extras, &split.extras));
             sum_gradients(network, &splits, gradient);
         }
         extras
@@ -183,7 +187,8 @@ impl Minibatch<'_> {
                 rows,
                 parameters: self.flat,
             };
-            self.objective.loss_gradient(&batch, &mut outputs, &mut split.extras);
+            self.objective
+                .loss_gradient(&batch, &mut outputs, &mut split.extras);
             let wide = pass.back(network, self.flat, transposed, outputs, &mut split.narrow);
             if chunk == WIDE_CHUNK_ROWS {
                 split.wide.push((pass, wide));
@@ -210,25 +215,29 @@ fn sum_gradients(network: &Network, splits: &[Split], gradient: &mut [f32]) {
         rest = after;
         match is_wide(&params.layer) {
             true => {
-                let rows = sums.chunks_mut(WIDE_INPUTS * params.layer.filters()).enumerate();
+                let rows = sums
+                    .chunks_mut(WIDE_INPUTS * params.layer.filters())
+                    .enumerate();
                 parts.extend(rows.map(|(row, sums)| (number, Some(row * WIDE_INPUTS), 0, sums)));
             }
             false => parts.push((number, None, narrow_at, sums)),
         }
         narrow_at += narrow_len(params);
     }
-    parts.into_par_iter().for_each(|(number, first, narrow_at, sums)| {
-        let layer = &network.layers()[number].layer;
-        for split in splits {
-            match first {
-                None => add(sums, &split.narrow[narrow_at..][..sums.len()]),
-                Some(first) => split.wide.iter().for_each(|(pass, gradients)| {
-                    let (input, gradient) = (&pass.inputs[number], &gradients[number]);
-                    layers::add_wide_gradient(layer, first, input, gradient, sums);
-                }),
+    parts
+        .into_par_iter()
+        .for_each(|(number, first, narrow_at, sums)| {
+            let layer = &network.layers()[number].layer;
+            for split in splits {
+                match first {
+                    None => add(sums, &split.narrow[narrow_at..][..sums.len()]),
+                    Some(first) => split.wide.iter().for_each(|(pass, gradients)| {
+                        let (input, gradient) = (&pass.inputs[number], &gradients[number]);
+                        layers::add_wide_gradient(layer, first, input, gradient, sums);
+                    }),
+                }
             }
-        }
-    });
+        });
 }
 
 /// What some rows left on their way through a network.
@@ -245,7 +254,8 @@ impl Pass {
         let mut inputs: Vec<Vec<f32>> = Vec::with_capacity(network.layers().len());
         let mut values: Vec<f32> = Vec::new();
         let begin = if encoder > 0 { spec.vector } else { 0 };
-        rows.iter().for_each(|row| values.extend_from_slice(&row[begin..spec.dim()]));
+        rows.iter()
+            .for_each(|row| values.extend_from_slice(&row[begin..spec.dim()]));
         for (number, params) in network.layers().iter().enumerate() {
             if number == encoder && encoder > 0 {
                 values = join(rows, spec.vector, &values);
@@ -282,8 +292,7 @@ impl Pass {
                 break;
             };
             let transposed = &transposed[number];
-            let mut next =
-                layers::input_gradient(params, flat, transposed, &gradient, input.len());
+            let mut next = layers::input_gradient(params, flat, transposed, &gradient, input.len());
             let kind = layers[below].layer.activation();
             if number == network.encoder_len() {
                 // The vector joined here; it does not learn.
