@@ -18,13 +18,17 @@ use crate::gpu::Array;
 use layers::is_wide;
 use rayon::prelude::*;
 
-/// Rows taken through a narrow network together, and through one with wide layers.
+/// Rows evaluated together.
+const FORWARD_ROWS: usize = 64;
+/// Rows taken through a narrow network and back together, and through one with wide layers.
 const CHUNK_ROWS: usize = 32;
-const WIDE_CHUNK_ROWS: usize = 256;
+const WIDE_CHUNK_ROWS: usize = 128;
 /// Splits of a batch of which each has gradients of its own: more would spend more time adding them.
 const GRAD_SPLITS: usize = 8;
+/// Rows of which wide layers keep what they see until their gradients are summed.
+const BLOCK_ROWS: usize = 2048;
 /// Inputs of a wide layer whose weights' gradients are summed together.
-const WIDE_INPUTS: usize = 32;
+const WIDE_INPUTS: usize = 128;
 
 /// Networks over one flat vector, on the CPU.
 pub struct CpuEngine {
@@ -98,10 +102,9 @@ impl CpuEngine {
 
 /// Writes the outputs `[n][outputs]` for observations `[n][observation]`, on all cores.
 pub fn forward(network: &Network, flat: &[f32], observations: &[f32], out: &mut [f32]) {
-    let (rows, outputs) = (chunk_rows(network), network.outputs());
-    let width = network.observation().dim();
-    let chunks = observations.par_chunks(rows * width);
-    let chunks = chunks.zip(out.par_chunks_mut(rows * outputs));
+    let (width, outputs) = (network.observation().dim(), network.outputs());
+    let chunks = observations.par_chunks(FORWARD_ROWS * width);
+    let chunks = chunks.zip(out.par_chunks_mut(FORWARD_ROWS * outputs));
     chunks.for_each(|(observations, out)| {
         let rows: Vec<&[f32]> = observations.chunks_exact(width).collect();
         let (_, outputs) = Pass::new(network, flat, &rows);
@@ -115,7 +118,9 @@ fn chunk_rows(network: &Network) -> usize {
 }
 
 fn add(sums: &mut [f32], values: &[f32]) {
-    sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+    sums.iter_mut()
+        .zip(values)
+        .for_each(|(sum, value)| *sum += value);
 }
 
 /// What the gradient is taken of.
@@ -140,9 +145,8 @@ impl Minibatch<'_> {
     /// Writes the gradient of a network's parameters. Returns the extras.
     fn gradient(&self, number: usize, network: &Network, gradient: &mut [f32]) -> Vec<f32> {
         let chunk = chunk_rows(network);
-        // Wide layers keep what they see of a block of rows until their gradients are summed.
         let (block, split) = match chunk {
-            WIDE_CHUNK_ROWS => (GRAD_SPLITS * chunk, chunk),
+            WIDE_CHUNK_ROWS => (BLOCK_ROWS, chunk),
             _ => (self.rows.len(), self.rows.len().div_ceil(GRAD_SPLITS)),
         };
         let layers = network.layers().iter();
@@ -154,7 +158,9 @@ impl Minibatch<'_> {
             let splits = rows.par_chunks(split.max(1));
             let splits = splits.map(|rows| self.split(number, network, &transposed, chunk, rows));
             let splits: Vec<Split> = splits.collect();
-            splits.iter().for_each(|split| add(&mut extras, &split.extras));
+            splits
+                .iter()
+                .for_each(|split| add(&mut extras, &split.extras));
             sum_gradients(network, &splits, gradient);
         }
         extras
@@ -181,7 +187,8 @@ impl Minibatch<'_> {
                 rows,
                 parameters: self.flat,
             };
-            self.objective.loss_gradient(&batch, &mut outputs, &mut split.extras);
+            self.objective
+                .loss_gradient(&batch, &mut outputs, &mut split.extras);
             let wide = pass.back(network, self.flat, transposed, outputs, &mut split.narrow);
             if chunk == WIDE_CHUNK_ROWS {
                 split.wide.push((pass, wide));
@@ -208,25 +215,29 @@ fn sum_gradients(network: &Network, splits: &[Split], gradient: &mut [f32]) {
         rest = after;
         match is_wide(&params.layer) {
             true => {
-                let rows = sums.chunks_mut(WIDE_INPUTS * params.layer.filters()).enumerate();
+                let rows = sums
+                    .chunks_mut(WIDE_INPUTS * params.layer.filters())
+                    .enumerate();
                 parts.extend(rows.map(|(row, sums)| (number, Some(row * WIDE_INPUTS), 0, sums)));
             }
             false => parts.push((number, None, narrow_at, sums)),
         }
         narrow_at += narrow_len(params);
     }
-    parts.into_par_iter().for_each(|(number, first, narrow_at, sums)| {
-        let layer = &network.layers()[number].layer;
-        for split in splits {
-            match first {
-                None => add(sums, &split.narrow[narrow_at..][..sums.len()]),
-                Some(first) => split.wide.iter().for_each(|(pass, gradients)| {
-                    let (input, gradient) = (&pass.inputs[number], &gradients[number]);
-                    layers::add_wide_gradient(layer, first, input, gradient, sums);
-                }),
+    parts
+        .into_par_iter()
+        .for_each(|(number, first, narrow_at, sums)| {
+            let layer = &network.layers()[number].layer;
+            for split in splits {
+                match first {
+                    None => add(sums, &split.narrow[narrow_at..][..sums.len()]),
+                    Some(first) => split.wide.iter().for_each(|(pass, gradients)| {
+                        let (input, gradient) = (&pass.inputs[number], &gradients[number]);
+                        layers::add_wide_gradient(layer, first, input, gradient, sums);
+                    }),
+                }
             }
-        }
-    });
+        });
 }
 
 /// What some rows left on their way through a network.
@@ -243,7 +254,8 @@ impl Pass {
         let mut inputs: Vec<Vec<f32>> = Vec::with_capacity(network.layers().len());
         let mut values: Vec<f32> = Vec::new();
         let begin = if encoder > 0 { spec.vector } else { 0 };
-        rows.iter().for_each(|row| values.extend_from_slice(&row[begin..spec.dim()]));
+        rows.iter()
+            .for_each(|row| values.extend_from_slice(&row[begin..spec.dim()]));
         for (number, params) in network.layers().iter().enumerate() {
             if number == encoder && encoder > 0 {
                 values = join(rows, spec.vector, &values);
@@ -280,8 +292,7 @@ impl Pass {
                 break;
             };
             let transposed = &transposed[number];
-            let mut next =
-                layers::input_gradient(params, flat, transposed, &gradient, input.len());
+            let mut next = layers::input_gradient(params, flat, transposed, &gradient, input.len());
             let kind = layers[below].layer.activation();
             if number == network.encoder_len() {
                 // The vector joined here; it does not learn.

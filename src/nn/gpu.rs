@@ -110,7 +110,9 @@ struct Samples<'a> {
 
 /// See [`GpuBatch::dims`](super::objective::GpuBatch::dims).
 fn dims(gpu: &Gpu, networks: &[Network], size: EngineSize) -> Buffer<u32> {
-    let observation = networks.first().map_or(0, |first| first.observation().dim());
+    let observation = networks
+        .first()
+        .map_or(0, |first| first.observation().dim());
     let mut dims = vec![observation, size.parameters - size.others(networks)];
     dims.extend(networks.iter().map(Network::outputs));
     let dims: Vec<u32> = dims.into_iter().map(|dim| dim as u32).collect();

@@ -145,7 +145,8 @@ impl Layer {
             for row in 0..rows {
                 let first = sample * self.input_len() + row * self.stride() * self.row_stride();
                 let columns = 0..columns;
-                offsets.extend(columns.map(|column| first + column * self.stride() * self.inputs[2]));
+                offsets
+                    .extend(columns.map(|column| first + column * self.stride() * self.inputs[2]));
             }
         }
         offsets

@@ -62,7 +62,10 @@ impl NetworkConfig {
             ("hidden", &self.hidden),
         ] {
             depth(key, widths.len())?;
-            if let Some(&width) = widths.iter().find(|width| !(1..=MAX_WIDTH).contains(*width)) {
+            if let Some(&width) = widths
+                .iter()
+                .find(|width| !(1..=MAX_WIDTH).contains(*width))
+            {
                 return Err(NetworkError::Width { key, width });
             }
         }
@@ -216,7 +219,10 @@ impl Network {
 
     /// The convolutions over the maps.
     pub fn conv_layers(&self) -> &[LayerParams] {
-        let dense = self.layers.iter().position(|params| params.layer.is_dense());
+        let dense = self
+            .layers
+            .iter()
+            .position(|params| params.layer.is_dense());
         &self.layers[..dense.unwrap_or(0)]
     }
 

@@ -90,7 +90,9 @@ impl Policy {
         to.put("action", self.action());
         to.put("normalized", self.normalizer.is_some());
         to.put_array("parameters", &self.parameters);
-        self.normalizer.as_ref().map_or(Ok(()), |normalizer| normalizer.save(to))
+        self.normalizer
+            .as_ref()
+            .map_or(Ok(()), |normalizer| normalizer.save(to))
     }
 
     /// Reads a policy that [`Policy::save`] wrote.

@@ -89,7 +89,10 @@ impl RunningMeanStd {
     /// Normalises the rows `[rows][dim]` that `values` begins with.
     pub fn normalize_in_place(&self, values: &mut Array, rows: usize) {
         match &self.device {
-            Device::Cpu => normalize(self.moments.host(), &mut values.host_mut()[..rows * self.dim]),
+            Device::Cpu => normalize(
+                self.moments.host(),
+                &mut values.host_mut()[..rows * self.dim],
+            ),
             Device::Gpu(_) => {
                 let from = values.clone();
                 self.normalize(&from, 0, values, 0, rows);

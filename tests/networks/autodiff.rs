@@ -51,11 +51,7 @@ fn forward(params: &LayerParams, flat: &Tensor<1>, x: Tensor<2>) -> Tensor<2> {
     let weights = flat.clone().slice([params.weights()]);
     let biases = Some(flat.clone().slice([params.biases()]));
     let sums = match layer.is_dense() {
-        true => linear(
-            x,
-            weights.reshape([layer.patch(), layer.filters()]),
-            biases,
-        ),
+        true => linear(x, weights.reshape([layer.patch(), layer.filters()]), biases),
         false => convolve(layer, x, weights, biases),
     };
     match layer.activation() {
@@ -82,7 +78,8 @@ fn convolve(
         biases,
         options,
     );
-    x.permute([0, 2, 3, 1]).reshape([samples, layer.output_len()])
+    x.permute([0, 2, 3, 1])
+        .reshape([samples, layer.output_len()])
 }
 
 /// The gradient with respect to a leaf.
@@ -108,7 +105,13 @@ pub fn ppo_loss(
     let [old_log_prob, advantage, target, old_value] = [4, 3, 2, 1].map(scalar);
     let value = value.squeeze_dim::<1>(1);
     let old_log_std = Tensor::from_inner(old_log_std);
-    let [clip, value_clip, value_coefficient, entropy_coefficient, kl_coefficient] = [
+    let [
+        clip,
+        value_clip,
+        value_coefficient,
+        entropy_coefficient,
+        kl_coefficient,
+    ] = [
         coefficients.clip,
         coefficients.value_clip,
         coefficients.value_coefficient,
@@ -120,7 +123,10 @@ pub fn ppo_loss(
     let inverse = log_std.clone().neg().exp().unsqueeze::<2>();
     let rows = |values: Tensor<2>| values.sum_dim(1).squeeze_dim::<1>(1);
     let noise = actions.sub(mean.clone()).mul(inverse.clone());
-    let normaliser = log_std.clone().sum().add_scalar(action as f64 * HALF_LOG_TAU);
+    let normaliser = log_std
+        .clone()
+        .sum()
+        .add_scalar(action as f64 * HALF_LOG_TAU);
     let log_prob = rows(noise.square().mul_scalar(-0.5)).sub(normaliser.clone());
     let ratio = log_prob.sub(old_log_prob).exp();
     let clipped = ratio.clone().clamp(1.0 - clip, 1.0 + clip);
@@ -130,14 +136,25 @@ pub fn ppo_loss(
     let error = value.clone().sub(target.clone()).square();
     let near = value.sub(old_value.clone()).clamp(-value_clip, value_clip);
     let near = old_value.add(near).sub(target).square();
-    let error = if value_clip > 0.0 { error.max_pair(near) } else { error };
+    let error = if value_clip > 0.0 {
+        error.max_pair(near)
+    } else {
+        error
+    };
     let value_loss = error.sum().mul_scalar(0.5);
 
-    let entropy = normaliser.add_scalar(0.5 * action as f64).mul_scalar(count as f64);
+    let entropy = normaliser
+        .add_scalar(0.5 * action as f64)
+        .mul_scalar(count as f64);
     // KL(old || new) of diagonal Gaussians.
     let mean_diff = old_mean.sub(mean).mul(inverse).square();
     let diff = old_log_std.sub(log_std);
-    let of_std = diff.clone().mul_scalar(2.0).exp().sub_scalar(1.0).mul_scalar(0.5);
+    let of_std = diff
+        .clone()
+        .mul_scalar(2.0)
+        .exp()
+        .sub_scalar(1.0)
+        .mul_scalar(0.5);
     let of_std = of_std.sub(diff).sum().mul_scalar(count as f64);
     let kl = rows(mean_diff.mul_scalar(0.5)).sum().add(of_std);
 

@@ -150,8 +150,8 @@ impl Case {
         let Device::Gpu(gpu) = device else {
             unreachable!("lavapipe is a GPU")
         };
-        let mut engine = GpuEngine::layerwise(gpu, self.networks.networks(), self.size())
-            .expect("an engine");
+        let mut engine =
+            GpuEngine::layerwise(gpu, self.networks.networks(), self.size()).expect("an engine");
         let array = |values: &[f32]| Array::from_slice(device, values);
         let (parameters, observations) = (array(&self.parameters), array(&self.observations()));
         let count = self.count();
@@ -188,7 +188,11 @@ impl Case {
     fn outcome(&self, device: &Device, out: &Array, gradient: &Array, sums: &Array) -> Outcome {
         let read = |array: &Array| array.read(device).expect("the device is there");
         let out = read(out);
-        assert_eq!([out[0], out[out.len() - 1]], [7.0; 2], "nothing else is written");
+        assert_eq!(
+            [out[0], out[out.len() - 1]],
+            [7.0; 2],
+            "nothing else is written"
+        );
         let (mean, value) = out[1..out.len() - 1].split_at(self.count() * ACTION);
         Outcome {
             mean: mean.to_vec(),
@@ -244,7 +248,11 @@ impl Outcome {
     fn agrees(&self, oracle: &Outcome, what: &str) {
         close(&self.mean, &oracle.mean, &format!("{what}: mean"));
         close(&self.value, &oracle.value, &format!("{what}: value"));
-        close(&self.gradient, &oracle.gradient, &format!("{what}: gradient"));
+        close(
+            &self.gradient,
+            &oracle.gradient,
+            &format!("{what}: gradient"),
+        );
         close(&self.sums, &oracle.sums, &format!("{what}: sums"));
     }
 }
@@ -285,9 +293,12 @@ fn agree(config: &NetworkConfig, observation: ObservationSpec, samples: usize) {
     let case = Case::new(config, observation, samples);
     let oracle = case.oracle();
     let what = format!("{:?}, {:?}", config.hidden, config.activation);
-    case.on(&Device::Cpu).agrees(&oracle, &format!("cpu, {what}"));
-    case.on(&lavapipe()).agrees(&oracle, &format!("gpu, {what}"));
-    case.layerwise().agrees(&oracle, &format!("tensors, {what}"));
+    case.on(&Device::Cpu)
+        .agrees(&oracle, &format!("cpu, {what}"));
+    case.on(&lavapipe())
+        .agrees(&oracle, &format!("gpu, {what}"));
+    case.layerwise()
+        .agrees(&oracle, &format!("tensors, {what}"));
 }
 
 /// On a GPU that has fused kernels for them; a hidden layer of any activation is not the output layer.
@@ -442,7 +453,10 @@ fn adam_steps_agree() {
         let (cpu, gpu) = (on(&Device::Cpu), on(&lavapipe()));
         close(&gpu, &cpu, "parameters");
         // A step is at most about as long as the learning rate.
-        let moved = cpu.iter().zip(&start).map(|(now, before)| (now - before).abs());
+        let moved = cpu
+            .iter()
+            .zip(&start)
+            .map(|(now, before)| (now - before).abs());
         assert!(moved.fold(0.0, f32::max) < 0.04);
     }
 }

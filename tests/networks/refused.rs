@@ -105,7 +105,9 @@ fn policies_come_back_from_a_section() {
         let mut section = Section::default();
         policy.save(&mut section).expect("in host memory");
         damage(&mut section);
-        let refused = Policy::load(&mut section).err().expect("something is wrong");
+        let refused = Policy::load(&mut section)
+            .err()
+            .expect("something is wrong");
         refused.to_string()
     };
     let action = damaged(|section| section.put("action", 6));

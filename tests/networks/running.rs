@@ -10,7 +10,8 @@ const DIM: usize = 3;
 fn rows(count: usize, stream: u32) -> Vec<f32> {
     let noise = normal(count * DIM, stream);
     let rows = noise.chunks_exact(DIM);
-    rows.flat_map(|row| [3.0 * row[0] + 100.0, 0.5 * row[1] - 2.0, 4.0]).collect()
+    rows.flat_map(|row| [3.0 * row[0] + 100.0, 0.5 * row[1] - 2.0, 4.0])
+        .collect()
 }
 
 /// Against the moments of all rows at once.
@@ -22,7 +23,9 @@ fn running_moments_are_those_of_all_rows() {
         let values = all.iter().skip(column).step_by(DIM).map(|&v| f64::from(v));
         let count = (all.len() / DIM) as f64;
         let mean = values.clone().sum::<f64>() / count;
-        let square = values.map(|value| (value - mean) * (value - mean)).sum::<f64>();
+        let square = values
+            .map(|value| (value - mean) * (value - mean))
+            .sum::<f64>();
         (mean, (square / count).sqrt())
     };
     for device in [Device::Cpu, lavapipe()] {

@@ -50,7 +50,12 @@ pub fn launch(
     params: &Params,
 ) {
     let buffers: [&dyn Argument; 5] = [gradient, norm_partials, parameters, m, v];
-    gpu.launch(&shader::ADAM, groups(params.parameters as usize), &buffers, params);
+    gpu.launch(
+        &shader::ADAM,
+        groups(params.parameters as usize),
+        &buffers,
+        params,
+    );
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+fma", "x86_64+avx2+fma", "aarch64+neon"))]

@@ -67,13 +67,19 @@ pub fn actor(
 ) {
     let actions = log_std.len();
     let inv_std: Vec<f32> = log_std.iter().map(|log| (-log).exp()).collect();
-    let log_std_diff: Vec<f32> = old_log_std.iter().zip(log_std).map(|(o, n)| o - n).collect();
+    let log_std_diff: Vec<f32> = old_log_std
+        .iter()
+        .zip(log_std)
+        .map(|(o, n)| o - n)
+        .collect();
     let var_ratio: Vec<f32> = log_std_diff.iter().map(|diff| (2.0 * diff).exp()).collect();
     let normaliser = log_std.iter().sum::<f32>() + actions as f32 * HALF_LOG_TAU;
     let entropy = normaliser + 0.5 * actions as f32;
     // The KL divergence of Gaussians of the same mean.
     let kl_of_std = var_ratio.iter().zip(&log_std_diff);
-    let kl_of_std: f32 = kl_of_std.map(|(ratio, diff)| 0.5 * (ratio - 1.0) - diff).sum();
+    let kl_of_std: f32 = kl_of_std
+        .map(|(ratio, diff)| 0.5 * (ratio - 1.0) - diff)
+        .sum();
     let (d_log_std, sums) = extras.split_at_mut(actions);
     for (row, mean) in rows.iter().zip(means.chunks_exact_mut(actions)) {
         let (_, row) = row.split_at(row.len() - 2 * actions - SCALARS);

@@ -72,7 +72,11 @@ fn column<const ROWS: usize, const LANES: usize>(
 }
 
 #[inline(always)]
-fn block<const ROWS: usize, const LANES: usize>(kernel: &mut impl GemmKernel, row: usize, lane: usize) {
+fn block<const ROWS: usize, const LANES: usize>(
+    kernel: &mut impl GemmKernel,
+    row: usize,
+    lane: usize,
+) {
     let sums = kernel.sums::<ROWS, LANES>(row, lane);
     for (r, sums) in sums.iter().enumerate() {
         kernel.store(row + r, lane, sums);
@@ -103,8 +107,13 @@ impl GemmKernel for Forward<'_> {
         let filters = self.biases.len();
         let patch_offsets = array::<ROWS, _>(self.patch_offsets, row);
         let mut sums = [*array(self.biases, lane); ROWS];
-        for (y, weights) in self.weights.chunks_exact(self.patch_row_len * filters).enumerate() {
-            let patches = patch_offsets.map(|offset| &self.input[offset + y * self.row_stride..][..self.patch_row_len]);
+        for (y, weights) in self
+            .weights
+            .chunks_exact(self.patch_row_len * filters)
+            .enumerate()
+        {
+            let patches = patch_offsets
+                .map(|offset| &self.input[offset + y * self.row_stride..][..self.patch_row_len]);
             accumulate(&mut sums, patches, weights, filters, lane);
         }
         sums

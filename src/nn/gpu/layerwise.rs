@@ -222,7 +222,12 @@ fn forward(params: &LayerParams, flat: &Tensor<1>, input: Tensor<2>) -> Tensor<2
         true => linear(input, weights(params, flat), biases),
         false => {
             let images = images(input, layer.inputs());
-            images_to_rows(conv2d(images, filters(params, flat), biases, options(layer)))
+            images_to_rows(conv2d(
+                images,
+                filters(params, flat),
+                biases,
+                options(layer),
+            ))
         }
     };
     activation(layer.activation(), sums)
@@ -264,7 +269,12 @@ fn input_gradient(params: &LayerParams, flat: &Tensor<1>, gradient: Tensor<2>) -
     let over = [over(height, rows), over(width, columns)];
     let options = ConvTransposeOptions::new([layer.stride(); 2], [0; 2], over, [1; 2], 1);
     let gradient = images(gradient, layer.outputs());
-    images_to_rows(conv_transpose2d(gradient, filters(params, flat), None, options))
+    images_to_rows(conv_transpose2d(
+        gradient,
+        filters(params, flat),
+        None,
+        options,
+    ))
 }
 
 fn part(flat: &Tensor<1>, range: Range<usize>) -> Tensor<1> {

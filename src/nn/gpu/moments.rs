@@ -27,13 +27,7 @@ pub fn take_in(gpu: &Gpu, moments: &mut Array, values: &Array, rows: usize, weig
 }
 
 /// Normalised rows `[rows, dim]`.
-pub fn normalized(
-    gpu: &Gpu,
-    moments: &Array,
-    values: &Array,
-    at: usize,
-    rows: usize,
-) -> Tensor<2> {
+pub fn normalized(gpu: &Gpu, moments: &Array, values: &Array, at: usize, rows: usize) -> Tensor<2> {
     let [means, variances] = halves(gpu, moments);
     let std = variances.sqrt().clamp_min(MIN_STD);
     let values = rows_of(gpu, values, at, rows, means.dims()[1]);
