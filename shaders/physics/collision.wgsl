@@ -1,30 +1,30 @@
-// Where the shapes of a world touch (src/body/collide.rs). One invocation an environment.
+// Where the shapes of a world touch . One invocation an environment.
 //
-// geoms    [geoms][GEOM]
-// tables   see `tables`
-// poses    [bodies * 7][envs]: place, quaternion x y z w
-// touches  [slots * 10][envs]: place, normal, first tangent, distance
-// keys     [slots][envs]: pair * 8 + point, the same from step to step
+// geoms    [geoms][GEOM_DIM]
+// model_table   see `model_table`
+// poses    [bodies * 7][envs]: position, quaternion x y z w
+// contacts  [max_contacts * 10][envs]: position, normal, first tangent, distance
+// contact_ids     [max_contacts][envs]: pair * 8 + point, the same from step to step
 // counts   [2][envs]: contacts kept, contacts that found no slot
 
-#import tables
+#import model_table
 #import spatial
-#import touch
-#import touch_plane
-#import touch_round
-#import touch_round_box
-#import touch_box_box
+#import contact
+#import contact_plane
+#import contact_capsule
+#import contact_capsule_box
+#import contact_box_box
 
 struct Params {
     envs: u32,
-    slots: u32,
+    max_contacts: u32,
 }
 
 @group(0) @binding(0) var<storage, read_write> geoms: array<f32>;
-@group(0) @binding(1) var<storage, read_write> tables: array<u32>;
+@group(0) @binding(1) var<storage, read_write> model_table: array<u32>;
 @group(0) @binding(2) var<storage, read_write> poses: array<f32>;
-@group(0) @binding(3) var<storage, read_write> touches: array<f32>;
-@group(0) @binding(4) var<storage, read_write> keys: array<u32>;
+@group(0) @binding(3) var<storage, read_write> contacts: array<f32>;
+@group(0) @binding(4) var<storage, read_write> contact_ids: array<u32>;
 @group(0) @binding(5) var<storage, read_write> counts: array<u32>;
 @group(0) @binding(6) var<uniform> params: Params;
 
@@ -32,16 +32,16 @@ struct Params {
 const GEOM_BODY = 0u;  // -1 for what stands still
 const GEOM_KIND = 1u;  // of `touch`
 const GEOM_SIZE = 2u;  // 3: radius and half length, or half sizes
-const GEOM_PLACE = 5u; // 3
-const GEOM_TURN = 8u;  // 4, x y z w
-const GEOM_REACH = 12u;
-const GEOM = 13u;
+const GEOM_POSITION = 5u; // 3
+const GEOM_ROTATION = 8u;  // 4, x y z w
+const GEOM_BOUNDING_RADIUS = 12u;
+const GEOM_DIM = 13u;
 
-const GEOMS_MOST = 64u;
+const GEOM_BOUND = 64u;
 
 // Of each geom its place in the world, and how far it reaches from there.
-var<private> spheres: array<vec4f, GEOMS_MOST>;
-var<private> turns: array<vec4f, GEOMS_MOST>;
+var<private> spheres: array<vec4f, GEOM_BOUND>;
+var<private> rotations: array<vec4f, GEOM_BOUND>;
 
 fn geom3(at: u32) -> vec3f { return vec3f(geoms[at], geoms[at + 1u], geoms[at + 2u]); }
 fn pose3(at: u32) -> vec3f {
@@ -50,18 +50,18 @@ fn pose3(at: u32) -> vec3f {
 }
 
 fn place_geoms() {
-    for (var geom = 0u; geom < tables[GEOM_COUNT]; geom++) {
-        let at = geom * GEOM;
-        var place = geom3(at + GEOM_PLACE);
-        var turn = vec4f(geom3(at + GEOM_TURN), geoms[at + GEOM_TURN + 3u]);
+    for (var geom = 0u; geom < model_table[GEOM_COUNT]; geom++) {
+        let at = geom * GEOM_DIM;
+        var position = geom3(at + GEOM_POSITION);
+        var rotation = vec4f(geom3(at + GEOM_ROTATION), geoms[at + GEOM_ROTATION + 3u]);
         if (geoms[at + GEOM_BODY] >= 0.0) {
             let body = u32(geoms[at + GEOM_BODY]) * 7u;
             let pose = vec4f(pose3(body + 3u), poses[(body + 6u) * params.envs + env]);
-            place = pose3(body) + rotate(pose, place);
-            turn = turned(pose, turn);
+            position = pose3(body) + rotate(pose, position);
+            rotation = quat_mul(pose, rotation);
         }
-        spheres[geom] = vec4f(place, geoms[at + GEOM_REACH]);
-        turns[geom] = turn;
+        spheres[geom] = vec4f(position, geoms[at + GEOM_BOUNDING_RADIUS]);
+        rotations[geom] = rotation;
     }
 }
 
@@ -77,18 +77,18 @@ fn matrix_of(q: vec4f) -> mat3x3f {
     );
 }
 
-fn placed(geom: u32) -> Placed {
-    let at = geom * GEOM;
+fn world_geom(geom: u32) -> WorldGeom {
+    let at = geom * GEOM_DIM;
     let kind = u32(geoms[at + GEOM_KIND]);
-    return Placed(kind, geom3(at + GEOM_SIZE), spheres[geom].xyz, matrix_of(turns[geom]));
+    return WorldGeom(kind, geom3(at + GEOM_SIZE), spheres[geom].xyz, matrix_of(rotations[geom]));
 }
 
 // Whether a sphere around the second leaves no doubt that they do not touch.
-fn apart(first: u32, second: u32, plane: bool) -> bool {
+fn bounding_spheres_apart(first: u32, second: u32, plane: bool) -> bool {
     let between = spheres[second].xyz - spheres[first].xyz;
-    let reach = spheres[first].w + spheres[second].w;
-    if (plane) { return dot(rotate(turns[first], vec3f(0.0, 0.0, 1.0)), between) > reach; }
-    return dot(between, between) > reach * reach;
+    let sum = spheres[first].w + spheres[second].w;
+    if (plane) { return dot(rotate(rotations[first], vec3f(0.0, 0.0, 1.0)), between) > sum; }
+    return dot(between, between) > sum * sum;
 }
 
 // Pairs that may touch, of some in a row. Software adapters run both sides of a branch, but a loop no
@@ -96,59 +96,59 @@ fn apart(first: u32, second: u32, plane: bool) -> bool {
 const ROW = 128u;
 var<private> near: array<u32, ROW>;
 
-fn sift(start: u32, to: u32, plane: bool) -> u32 {
+fn broad_phase(start: u32, to: u32, plane: bool) -> u32 {
     var count = 0u;
     for (var index = start; index < min(start + ROW, to); index++) {
-        let geoms_at = tables[PAIRS_AT] + index * PAIR + PAIR_GEOMS;
-        if (apart(tables[geoms_at], tables[geoms_at + 1u], plane)) { continue; }
+        let geoms_at = model_table[PAIRS_AT] + index * PAIR + PAIR_GEOMS;
+        if (bounding_spheres_apart(model_table[geoms_at], model_table[geoms_at + 1u], plane)) { continue; }
         near[count] = index;
         count++;
     }
     return count;
 }
 
-fn leader(index: u32) -> Placed { return placed(tables[tables[PAIRS_AT] + index * PAIR + PAIR_GEOMS]); }
-fn partner(index: u32) -> Placed { return placed(tables[tables[PAIRS_AT] + index * PAIR + PAIR_GEOMS + 1u]); }
+fn first_geom(index: u32) -> WorldGeom { return world_geom(model_table[model_table[PAIRS_AT] + index * PAIR + PAIR_GEOMS]); }
+fn second_geom(index: u32) -> WorldGeom { return world_geom(model_table[model_table[PAIRS_AT] + index * PAIR + PAIR_GEOMS + 1u]); }
 
 @compute @workgroup_size(64)
 fn collision(@builtin(global_invocation_id) id: vec3u) {
     env = id.x;
     if (env >= params.envs) { return; }
     place_geoms();
-    for (var start = 0u; start < tables[PLANE_ROUND]; start += ROW) {
-        let count = sift(start, tables[PLANE_ROUND], true);
+    for (var start = 0u; start < model_table[PLANE_CAPSULE]; start += ROW) {
+        let count = broad_phase(start, model_table[PLANE_CAPSULE], true);
         for (var i = 0u; i < count; i++) {
             pair = near[i];
-            let second = partner(pair);
-            if (second.kind != PLANE) { plane_round(leader(pair), second); }
+            let second = second_geom(pair);
+            if (second.kind != PLANE) { plane_capsule(first_geom(pair), second); }
         }
     }
-    for (var start = tables[PLANE_ROUND]; start < tables[PLANE_BOX]; start += ROW) {
-        let count = sift(start, tables[PLANE_BOX], true);
+    for (var start = model_table[PLANE_CAPSULE]; start < model_table[PLANE_BOX]; start += ROW) {
+        let count = broad_phase(start, model_table[PLANE_BOX], true);
         for (var i = 0u; i < count; i++) {
             pair = near[i];
-            plane_box(leader(pair), partner(pair));
+            plane_box(first_geom(pair), second_geom(pair));
         }
     }
-    for (var start = tables[PLANE_BOX]; start < tables[ROUND_ROUND]; start += ROW) {
-        let count = sift(start, tables[ROUND_ROUND], false);
+    for (var start = model_table[PLANE_BOX]; start < model_table[CAPSULE_CAPSULE]; start += ROW) {
+        let count = broad_phase(start, model_table[CAPSULE_CAPSULE], false);
         for (var i = 0u; i < count; i++) {
             pair = near[i];
-            round_round(leader(pair), partner(pair));
+            capsule_capsule(first_geom(pair), second_geom(pair));
         }
     }
-    for (var start = tables[ROUND_ROUND]; start < tables[ROUND_BOX]; start += ROW) {
-        let count = sift(start, tables[ROUND_BOX], false);
+    for (var start = model_table[CAPSULE_CAPSULE]; start < model_table[CAPSULE_BOX]; start += ROW) {
+        let count = broad_phase(start, model_table[CAPSULE_BOX], false);
         for (var i = 0u; i < count; i++) {
             pair = near[i];
-            round_box(leader(pair), partner(pair));
+            capsule_box(first_geom(pair), second_geom(pair));
         }
     }
-    for (var start = tables[ROUND_BOX]; start < tables[BOX_BOX]; start += ROW) {
-        let count = sift(start, tables[BOX_BOX], false);
+    for (var start = model_table[CAPSULE_BOX]; start < model_table[BOX_BOX]; start += ROW) {
+        let count = broad_phase(start, model_table[BOX_BOX], false);
         for (var i = 0u; i < count; i++) {
             pair = near[i];
-            box_box(leader(pair), partner(pair));
+            box_box(first_geom(pair), second_geom(pair));
         }
     }
     counts[env] = kept;

@@ -1,18 +1,18 @@
-// Contacts and joint limits as mass-weighted rows of the soft constraint problem (src/body/constrain.rs). One
+// Contacts and joint limits as mass-qacc_whitened rows of the soft constraint problem (src/physics/constraints.rs). One
 // row of workgroups a contact, then one for every three joints; one invocation an environment.
 //
-// tables       see `tables`
+// model_table       see `model_table`
 // state        [positions + dofs][envs]
-// dynamics     see `articulate`
-// touches      [slots * 10][envs]: place, normal, tangent, distance
-// keys         [slots][envs]: pair * 8 + point
+// dynamics     see `smooth_dynamics`
+// contacts      [max_contacts * 10][envs]: position, normal, tangent, distance
+// contact_ids         [max_contacts][envs]: pair * 8 + point
 // counts       [2][envs]: contacts, overflow
-// rows         [slots * 3 + joints][quads][envs], each over the degrees of freedom
-// constraints  [slots + joints][CONSTRAINT][envs]
+// rows         [max_contacts * 3 + joints][quads][envs], each over the degrees of freedom
+// constraints  [max_contacts + joints][CONSTRAINT_DIM][envs]
 
-#import tables
+#import model_table
 #import state
-#import touches
+#import contacts
 #import spatial
 #import dynamics
 #import constraints
@@ -22,70 +22,70 @@ struct Params {
     dt: f32,
 }
 
-@group(0) @binding(0) var<storage, read_write> tables: array<u32>;
+@group(0) @binding(0) var<storage, read_write> model_table: array<u32>;
 @group(0) @binding(1) var<storage, read_write> state: array<f32>;
 @group(0) @binding(2) var<storage, read_write> dynamics: array<f32>;
-@group(0) @binding(3) var<storage, read_write> touches: array<f32>;
-@group(0) @binding(4) var<storage, read_write> keys: array<u32>;
+@group(0) @binding(3) var<storage, read_write> contacts: array<f32>;
+@group(0) @binding(4) var<storage, read_write> contact_ids: array<u32>;
 @group(0) @binding(5) var<storage, read_write> counts: array<u32>;
 @group(0) @binding(6) var<storage, read_write> rows: array<vec4f>;
 @group(0) @binding(7) var<storage, read_write> constraints: array<f32>;
 @group(0) @binding(8) var<uniform> params: Params;
 
 // Of each degree of freedom, three rows: a contact's normal and tangents, or three joints' limits.
-var<private> x: array<vec3f, ALL_DOFS_MOST>;
+var<private> x: array<vec3f, WORLD_DOF_BOUND>;
 
-fn kept(at: u32) -> f32 { return dynamics[at * params.envs + env]; }
+fn load(at: u32) -> f32 { return dynamics[at * params.envs + env]; }
 
 // Which degrees of freedom move a body.
-fn movers(body: u32) -> vec3u {
+fn dof_mask(body: u32) -> vec3u {
     if (body == NONE) { return vec3u(0u); }
-    let at = tables[BODIES_AT] + body * BODY + BODY_MOVERS;
-    return vec3u(tables[at], tables[at + 1u], tables[at + 2u]);
+    let at = model_table[BODIES_AT] + body * BODY + BODY_DOF_MASK;
+    return vec3u(model_table[at], model_table[at + 1u], model_table[at + 2u]);
 }
 
 // How the second body's point moves from the first's along three directions. All trees and degrees of
 // freedom in turn, so that all invocations read the same.
-fn part(first: u32, second: u32, point: vec3f, directions: mat3x3f) {
-    let movers_of_second = movers(second);
-    let movers_of_first = movers(first);
-    for (var index = 0u; index < tables[TREE_COUNT]; index++) {
-        let tree = tables[TREES_AT] + index * TREE;
+fn add_point(first: u32, second: u32, point: vec3f, directions: mat3x3f) {
+    let mask_of_second = dof_mask(second);
+    let mask_of_first = dof_mask(first);
+    for (var index = 0u; index < model_table[TREE_COUNT]; index++) {
+        let tree = model_table[TREES_AT] + index * TREE;
         let arm = point - origin_of(tree);
-        for (var k = 0u; k < tables[tree + TREE_DOFS]; k++) {
-            let dof = tables[tree + TREE_DOF] + k;
-            let sign = f32((movers_of_second[dof / 32u] >> (dof % 32u)) & 1u) - f32((movers_of_first[dof / 32u] >> (dof % 32u)) & 1u);
+        for (var k = 0u; k < model_table[tree + TREE_DOFS]; k++) {
+            let dof = model_table[tree + TREE_DOF] + k;
+            let sign = f32((mask_of_second[dof / 32u] >> (dof % 32u)) & 1u) - f32((mask_of_first[dof / 32u] >> (dof % 32u)) & 1u);
             let m = 6u * dof;
-            let angular = vec3f(kept(m), kept(m + 1u), kept(m + 2u));
-            let linear = vec3f(kept(m + 3u), kept(m + 4u), kept(m + 5u));
+            let angular = vec3f(load(m), load(m + 1u), load(m + 2u));
+            let linear = vec3f(load(m + 3u), load(m + 4u), load(m + 5u));
             x[dof] = sign * ((linear + cross(angular, arm)) * directions);
         }
     }
 }
 
 // Speeds along the rows, of the velocities that there are.
-fn speeds() -> vec3f {
+fn row_velocities() -> vec3f {
     var sum = vec3f(0.0);
-    for (var dof = 0u; dof < tables[DOF_COUNT]; dof++) { sum += x[dof] * v(dof); }
+    for (var dof = 0u; dof < model_table[DOF_COUNT]; dof++) { sum += x[dof] * v(dof); }
     return sum;
 }
 
 // x = L^-T x. The degrees of freedom beyond one stand right behind it.
-fn weigh() {
-    for (var left = tables[DOF_COUNT]; left > 0u; left--) {
-        let info = tables[DOFS_AT] + (left - 1u) * DOF;
-        let depth = tables[info + DOF_DEPTH];
+fn solve_lt() {
+    for (var left = model_table[DOF_COUNT]; left > 0u; left--) {
+        let info = model_table[DOFS_AT] + (left - 1u) * DOF;
+        let depth = model_table[info + DOF_DEPTH];
         var value = x[left - 1u];
-        for (var beyond = left; beyond < tables[info + DOF_LAST]; beyond++) {
-            let end = tables[tables[DOFS_AT] + beyond * DOF + DOF_END];
-            value -= kept(FACTORS_AT() + end - depth) * x[beyond];
+        for (var beyond = left; beyond < model_table[info + DOF_LAST]; beyond++) {
+            let end = model_table[model_table[DOFS_AT] + beyond * DOF + DOF_END];
+            value -= load(FACTORS_AT() + end - depth) * x[beyond];
         }
-        x[left - 1u] = value * kept(FACTORS_AT() + tables[info + DOF_ROW]);
+        x[left - 1u] = value * load(FACTORS_AT() + model_table[info + DOF_ROW]);
     }
 }
 
-// The least regularisation (src/body/constrain.rs says why).
-const SOFTEST = 1e-6;
+// The least regularisation (src/physics/constraints.rs says why).
+const MIN_REGULARIZATION = 1e-6;
 
 // Stiffness and damping of a constraint, and its impedance at a distance.
 fn compliance(softness: u32, distance: f32) -> vec3f {
@@ -111,16 +111,16 @@ fn compliance(softness: u32, distance: f32) -> vec3f {
 }
 
 fn write(constraint: u32, field: u32, value: f32) {
-    constraints[(constraint * CONSTRAINT + field) * params.envs + env] = value;
+    constraints[(constraint * CONSTRAINT_DIM + field) * params.envs + env] = value;
 }
 
 // Weighs the rows and writes as many as there are.
-fn finish(row: u32, count: u32) {
-    weigh();
+fn write_rows(row: u32, count: u32) {
+    solve_lt();
     for (var k = 0u; k < count; k++) {
-        for (var quad = 0u; quad < tables[QUADS]; quad++) {
+        for (var quad = 0u; quad < model_table[QUADS]; quad++) {
             let d = 4u * quad;
-            let at = (row + k) * tables[QUADS] + quad;
+            let at = (row + k) * model_table[QUADS] + quad;
             rows[at * params.envs + env] = vec4f(x[d][k], x[d + 1u][k], x[d + 2u][k], x[d + 3u][k]);
         }
     }
@@ -129,7 +129,7 @@ fn finish(row: u32, count: u32) {
 // Of the three rows with each other.
 fn products() -> mat3x3f {
     var sum = mat3x3f();
-    for (var dof = 0u; dof < tables[DOF_COUNT]; dof++) {
+    for (var dof = 0u; dof < model_table[DOF_COUNT]; dof++) {
         let j = x[dof];
         sum += mat3x3f(j * j.x, j * j.y, j * j.z);
     }
@@ -138,23 +138,23 @@ fn products() -> mat3x3f {
 
 fn contact(slot: u32) {
     if (slot >= counts[env]) { return; }
-    let pair = tables[PAIRS_AT] + keys[slot * params.envs + env] / 8u * PAIR;
-    let at = slot * TOUCH;
-    let point = touch3(at);
-    let normal = touch3(at + TOUCH_NORMAL);
-    let tangent = touch3(at + TOUCH_TANGENT);
-    let distance = touches[(at + TOUCH_DISTANCE) * params.envs + env];
+    let pair = model_table[PAIRS_AT] + contact_ids[slot * params.envs + env] / 8u * PAIR;
+    let at = slot * CONTACT_DIM;
+    let point = contact3(at);
+    let normal = contact3(at + CONTACT_NORMAL);
+    let tangent = contact3(at + CONTACT_TANGENT);
+    let distance = contacts[(at + CONTACT_DISTANCE) * params.envs + env];
     let directions = mat3x3f(normal, tangent, cross(normal, tangent));
-    part(tables[pair + PAIR_BODIES], tables[pair + PAIR_BODIES + 1u], point, directions);
-    let soft = compliance(pair + PAIR_SOFTNESS, distance);
-    let target_now = -soft.y * speeds() - vec3f(soft.x * soft.z * distance, 0.0, 0.0);
+    add_point(model_table[pair + PAIR_BODIES], model_table[pair + PAIR_BODIES + 1u], point, directions);
+    let soft = compliance(pair + PAIR_SOLVER_PARAMS, distance);
+    let target_now = -soft.y * row_velocities() - vec3f(soft.x * soft.z * distance, 0.0, 0.0);
     let friction = real(pair + PAIR_FRICTION);
-    let regular = (1.0 - soft.z) / soft.z * real(pair + PAIR_LOOSENESS);
+    let regular = (1.0 - soft.z) / soft.z * real(pair + PAIR_INVWEIGHT0);
     for (var k = 0u; k < 3u; k++) { write(slot, TARGET + k, target_now[k]); }
     let pyramid = 2.0 * friction * friction * (1.0 + friction * friction);
-    write(slot, SOFTNESS, max(regular * select(1.0, pyramid, friction > 0.0), SOFTEST));
+    write(slot, REGULARIZATION, max(regular * select(1.0, pyramid, friction > 0.0), MIN_REGULARIZATION));
     write(slot, FRICTION, friction);
-    finish(3u * slot, 3u);
+    write_rows(3u * slot, 3u);
     let block = products();
     write(slot, BLOCK, block[0][0]);
     write(slot, BLOCK + 1u, block[0][1]);
@@ -166,19 +166,19 @@ fn contact(slot: u32) {
 
 // A joint's limit, if it is past it, as one of the three rows.
 fn limit(index: u32, k: u32) {
-    let joint = tables[JOINTS_AT] + index * JOINT;
-    let constraint = tables[SLOTS] + index;
+    let joint = model_table[JOINTS_AT] + index * JOINT;
+    let constraint = model_table[MAX_CONTACTS] + index;
     write(constraint, ACTIVE, 0.0);
-    if (tables[joint + JOINT_LIMITED] == 0u) { return; }
+    if (model_table[joint + JOINT_LIMITED] == 0u) { return; }
     let low = real(joint + JOINT_RANGE);
     let high = real(joint + JOINT_RANGE + 1u);
-    let where_q = tables[joint + JOINT_Q];
-    let dof = tables[joint + JOINT_V];
+    let where_q = model_table[joint + JOINT_Q];
+    let dof = model_table[joint + JOINT_V];
     var distance = 0.0;
     var axis = vec3f(0.0);
     var count = 1u;
-    if (tables[joint + JOINT_KIND] == BALL) {
-        let rotation = rotation_vector(q_turn(where_q));
+    if (model_table[joint + JOINT_KIND] == BALL) {
+        let rotation = rotation_vector(q_rotation(where_q));
         let angle = length(rotation);
         distance = high - angle;
         axis = -rotation / angle;
@@ -195,25 +195,25 @@ fn limit(index: u32, k: u32) {
         x[dof + i][k] = axis[i];
         speed += axis[i] * v(dof + i);
     }
-    let soft = compliance(joint + JOINT_SOFTNESS, distance);
-    let looseness = real(tables[DOFS_AT] + dof * DOF + DOF_LOOSENESS);
+    let soft = compliance(joint + JOINT_SOLVER_PARAMS, distance);
+    let looseness = real(model_table[DOFS_AT] + dof * DOF + DOF_INVWEIGHT0);
     write(constraint, TARGET, -soft.y * speed - soft.x * soft.z * distance);
-    write(constraint, SOFTNESS, max((1.0 - soft.z) / soft.z * looseness, SOFTEST));
+    write(constraint, REGULARIZATION, max((1.0 - soft.z) / soft.z * looseness, MIN_REGULARIZATION));
     write(constraint, ACTIVE, 1.0);
 }
 
 fn limits(first: u32) {
-    let count = min(3u, tables[JOINT_COUNT] - first);
+    let count = min(3u, model_table[JOINT_COUNT] - first);
     for (var k = 0u; k < count; k++) { limit(first + k, k); }
-    finish(3u * tables[SLOTS] + first, count);
+    write_rows(3u * model_table[MAX_CONTACTS] + first, count);
     var squares = vec3f(0.0);
-    for (var dof = 0u; dof < tables[DOF_COUNT]; dof++) { squares += x[dof] * x[dof]; }
-    for (var k = 0u; k < count; k++) { write(tables[SLOTS] + first + k, BLOCK, squares[k]); }
+    for (var dof = 0u; dof < model_table[DOF_COUNT]; dof++) { squares += x[dof] * x[dof]; }
+    for (var k = 0u; k < count; k++) { write(model_table[MAX_CONTACTS] + first + k, BLOCK, squares[k]); }
 }
 
 @compute @workgroup_size(64)
 fn make_constraints(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     env = id.x;
     if (env >= params.envs) { return; }
-    if (group.y < tables[SLOTS]) { contact(group.y); } else { limits(3u * (group.y - tables[SLOTS])); }
+    if (group.y < model_table[MAX_CONTACTS]) { contact(group.y); } else { limits(3u * (group.y - model_table[MAX_CONTACTS])); }
 }

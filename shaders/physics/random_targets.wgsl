@@ -1,4 +1,4 @@
-// Draws targets for the drives: normal, of a given deviation, about zero. One row of workgroups
+// Draws targets for the drives: normal, of a given std, about zero. One row of workgroups
 // a target, one invocation an environment.
 //
 // targets  [driven][envs], rad
@@ -7,9 +7,9 @@
 
 struct Params {
     envs: u32,
-    deviation: f32, // rad
+    action_std: f32, // rad
     seed: u32,
-    clock: u32,
+    step_counter: u32,
     stream: u32,
 }
 
@@ -21,6 +21,6 @@ fn random_targets(@builtin(global_invocation_id) id: vec3u) {
     let env = id.x;
     let index = id.y;
     if (env >= params.envs) { return; }
-    let bits = random4(params.seed, env, params.clock, params.stream + index);
-    targets[index * params.envs + env] = params.deviation * gaussian(bits);
+    let bits = random4(params.seed, env, params.step_counter, params.stream + index);
+    targets[index * params.envs + env] = params.action_std * gaussian(bits);
 }

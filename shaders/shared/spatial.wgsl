@@ -1,11 +1,11 @@
-// Quaternions (x, y, z, w) and spatial vectors, the twin of src/body/spatial.rs.
+// Quaternions (x, y, z, w) and spatial vectors, the twin of src/physics/spatial.rs.
 
-fn rotate(turn: vec4f, v: vec3f) -> vec3f {
-    let t = 2.0 * cross(turn.xyz, v);
-    return v + turn.w * t + cross(turn.xyz, t);
+fn rotate(rotation: vec4f, v: vec3f) -> vec3f {
+    let t = 2.0 * cross(rotation.xyz, v);
+    return v + rotation.w * t + cross(rotation.xyz, t);
 }
 
-fn turned(a: vec4f, b: vec4f) -> vec4f {
+fn quat_mul(a: vec4f, b: vec4f) -> vec4f {
     return vec4f(a.w * b.xyz + b.w * a.xyz + cross(a.xyz, b.xyz), a.w * b.w - dot(a.xyz, b.xyz));
 }
 
@@ -17,8 +17,8 @@ fn from_rotation(v: vec3f) -> vec4f {
 }
 
 // The inverse of `from_rotation`, its angle at most pi.
-fn rotation_vector(turn: vec4f) -> vec3f {
-    let q = select(turn, -turn, turn.w < 0.0);
+fn rotation_vector(rotation: vec4f) -> vec3f {
+    let q = select(rotation, -rotation, rotation.w < 0.0);
     let sine = length(q.xyz);
     if (sine <= 1e-9) { return 2.0 * q.xyz; }
     return q.xyz * (2.0 * atan2(sine, q.w) / sine);

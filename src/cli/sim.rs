@@ -6,12 +6,12 @@ use clap::{Args, ValueEnum};
 use footwork::physics::mjcf;
 use footwork::physics::model::Model;
 use footwork::physics::motion_library::MotionLibrary;
-use footwork::physics::simulator::{STEP_RATE, SUBSTEPS, Settings};
+use footwork::physics::simulator::{STEP_RATE, SUBSTEPS, SolverOptions};
 use footwork::physics::scenes;
 use footwork::gpu::{Choice, Device, Gpu};
 use footwork::motion::import::ImportOptions;
 use footwork::report::table::table;
-use footwork::env::humanoid::Setup;
+use footwork::env::humanoid::batch::{self, SimulatorBatchConfig};
 use footwork::view::strip::strips;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
@@ -22,29 +22,29 @@ use std::time::Instant;
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Scene {
     /// One humanoid
-    One,
+    Humanoid,
     /// Two humanoids face to face
-    Two,
+    Boxing,
     /// A humanoid and the box it is to punch
-    Box,
+    PunchingBox,
 }
 
 /// Let bodies move by random actions, and see how fast and how soundly they do; or see recorded motion
 /// in the body.
 #[derive(Args)]
 pub struct Sim {
-    /// Worlds side by side
+    /// Environments side by side
     #[arg(
         long,
         value_name = "N",
         default_value_t = 1024,
         allow_negative_numbers = true
     )]
-    worlds: usize,
+    envs: usize,
     /// Where to simulate
     #[arg(long, value_enum, default_value = "auto")]
     device: Choice,
-    /// Simulated seconds of each world
+    /// Simulated seconds of each environment
     #[arg(
         long,
         value_name = "S",
@@ -52,8 +52,8 @@ pub struct Sim {
         allow_negative_numbers = true
     )]
     seconds: f64,
-    /// Who is in a world
-    #[arg(long, value_enum, default_value = "one", conflicts_with = "model")]
+    /// Who is in an environment
+    #[arg(long, value_enum, default_value = "humanoid", conflicts_with = "model")]
     scene: Scene,
     /// A model of your own, MJCF, in place of the humanoid
     #[arg(long, value_name = "FILE")]
@@ -65,29 +65,29 @@ pub struct Sim {
         default_value_t = 0.5,
         allow_negative_numbers = true
     )]
-    deviation: f32,
+    action_std: f32,
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     seed: u32,
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
     /// In place of random actions: a BVH file, or a folder of them, to put into the body
-    #[arg(long, value_name = "PATH", requires = "pictures", conflicts_with_all = RANDOM)]
+    #[arg(long, value_name = "PATH", requires = "out", conflicts_with_all = RANDOM)]
     clip: Option<PathBuf>,
     /// Folder for two film strips of each clip: replayed, and with the drives following its angles
     #[arg(long, value_name = "FOLDER", requires = "clip")]
-    pictures: Option<PathBuf>,
+    out: Option<PathBuf>,
 }
 
-const MOST_WORLDS: usize = 1 << 20;
+const MAX_ENVS: usize = 1 << 20;
 
 /// What only random actions know.
 const RANDOM: [&str; 7] = [
-    "worlds",
+    "envs",
     "device",
     "seconds",
     "scene",
-    "deviation",
+    "action_std",
     "seed",
     "json",
 ];
@@ -97,35 +97,36 @@ const RANDOM: [&str; 7] = [
 struct Figures {
     device: String,
     threads: usize,
-    worlds: usize,
+    envs: usize,
     control_steps: u64,
     control_steps_per_s: f64,
     /// Simulated seconds in a second.
     real_time: f64,
-    /// Times that a world broke and was started anew.
-    nan_worlds: u64,
-    /// Of a world in a step.
+    /// Times that an environment diverged and was reset.
+    diverged_envs: u64,
+    /// Contacts of an environment in a step.
     contacts_mean: f64,
     contacts_max: u32,
+    /// Contacts that found no room.
     overflow: u64,
-    /// Of all positions and velocities at the end: equal for equal runs on one device.
+    /// Hash of all positions and velocities at the end: equal for equal runs on one device.
     state_hash: String,
 }
 
 impl Sim {
     pub fn run(self) -> Result<()> {
-        if let (Some(clip), Some(folder)) = (&self.clip, &self.pictures) {
+        if let (Some(clip), Some(folder)) = (&self.clip, &self.out) {
             return self.draw(clip, folder);
         }
-        if !(1..=MOST_WORLDS).contains(&self.worlds) {
-            return Err(Usage(format!("--worlds must be from 1 to {MOST_WORLDS}")).into());
+        if !(1..=MAX_ENVS).contains(&self.envs) {
+            return Err(Usage(format!("--envs must be from 1 to {MAX_ENVS}")).into());
         }
         if !(self.seconds > 0.0 && self.seconds <= 1e6) {
             let why = "--seconds must be above zero and no more than a million";
             return Err(Usage(why.into()).into());
         }
-        if !(0.0..=10.0).contains(&self.deviation) {
-            return Err(Usage("--deviation must lie between 0 and 10 rad".into()).into());
+        if !(0.0..=10.0).contains(&self.action_std) {
+            return Err(Usage("--action-std must lie between 0 and 10 rad".into()).into());
         }
         let model = Arc::new(self.load()?);
         if model.dofs.is_empty() {
@@ -161,28 +162,27 @@ impl Sim {
     fn load(&self) -> Result<Model> {
         Ok(match (&self.model, self.scene) {
             (Some(file), _) => mjcf::read(file)?,
-            (None, Scene::One) => scenes::one(),
-            (None, Scene::Two) => scenes::two(),
-            (None, Scene::Box) => scenes::punching(),
+            (None, Scene::Humanoid) => scenes::humanoid(),
+            (None, Scene::Boxing) => scenes::boxing_match(),
+            (None, Scene::PunchingBox) => scenes::humanoid_and_box(),
         })
     }
 
     fn measure(&self, model: Arc<Model>, device: &Device) -> Result<Figures> {
-        let settings = Settings::training(&model);
-        let setup = Setup {
-            envs: self.worlds,
-            settings,
+        let config = SimulatorBatchConfig {
+            envs: self.envs,
+            options: SolverOptions::fast(&model),
             seed: self.seed,
-            watched: Vec::new(),
+            force_pairs: Vec::new(),
             model,
         };
         // Compiles the shaders.
-        let mut simulation = setup.on(device)?;
-        simulation.explore(self.deviation);
-        simulation.step();
-        simulation.tallies()?;
-        drop(simulation);
-        let mut simulation = setup.on(device)?;
+        let mut worlds = batch::open(device, &config)?;
+        worlds.draw_targets(self.action_std);
+        worlds.step();
+        worlds.counters()?;
+        drop(worlds);
+        let mut worlds = batch::open(device, &config)?;
         let rate = f64::from(STEP_RATE) / SUBSTEPS as f64;
         let steps = (self.seconds * rate).ceil() as u64;
         let line = ProgressBar::new(steps).with_style(ProgressStyle::with_template(
@@ -190,28 +190,28 @@ impl Sim {
         )?);
         let begun = Instant::now();
         for _ in 0..steps {
-            simulation.explore(self.deviation);
-            simulation.step();
+            worlds.draw_targets(self.action_std);
+            worlds.step();
             device.pace()?;
             line.inc(1);
         }
-        let tallies = simulation.tallies()?;
+        let counters = worlds.counters()?;
         let seconds = begun.elapsed().as_secs_f64();
         line.finish_and_clear();
-        let actions = steps * self.worlds as u64;
-        let state = simulation.state()?;
+        let actions = steps * self.envs as u64;
+        let state = worlds.state()?;
         let per_s = actions as f64 / seconds;
         Ok(Figures {
             device: device.name(),
             threads: rayon::current_num_threads(),
-            worlds: self.worlds,
+            envs: self.envs,
             control_steps: actions,
             control_steps_per_s: per_s,
             real_time: per_s / rate,
-            nan_worlds: tallies.broken,
-            contacts_mean: tallies.contacts as f64 / (actions * SUBSTEPS as u64) as f64,
-            contacts_max: tallies.most_contacts,
-            overflow: tallies.overflow,
+            diverged_envs: counters.diverged,
+            contacts_mean: counters.contacts as f64 / (actions * SUBSTEPS as u64) as f64,
+            contacts_max: counters.peak_contacts,
+            overflow: counters.overflow,
             state_hash: format!("{:08x}", crc32fast::hash(bytemuck::cast_slice(&state))),
         })
     }
@@ -220,7 +220,7 @@ impl Sim {
 fn shown(figures: &Figures) -> String {
     let rows = [
         ("device", figures.device.clone()),
-        ("worlds", figures.worlds.to_string()),
+        ("environments", figures.envs.to_string()),
         ("control steps", figures.control_steps.to_string()),
         (
             "control steps a second",
@@ -230,7 +230,7 @@ fn shown(figures: &Figures) -> String {
             "simulated seconds in a second",
             format!("{:.0}", figures.real_time),
         ),
-        ("worlds that broke", figures.nan_worlds.to_string()),
+        ("diverged environments", figures.diverged_envs.to_string()),
         (
             "contacts, mean of a step",
             format!("{:.2}", figures.contacts_mean),

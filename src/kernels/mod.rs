@@ -4,12 +4,14 @@
 //! - [`locomotion`]: a step of the motion-matching environments;
 //! - [`search`]: the nearest database frame;
 //! - [`physics`]: a step of the articulated bodies;
+//! - [`humanoid`]: what tasks of the simulated humanoid add to it;
 //! - [`learn`]: sampling, advantages, and the gradient step of dense networks;
 //! - [`bench`]: what a device could do at most;
 //! - [`rng`]: counter-based random numbers that shaders and twins share;
 //! - [`termination`]: how a step ends.
 
 pub mod bench;
+pub mod humanoid;
 pub mod learn;
 pub mod locomotion;
 pub mod physics;

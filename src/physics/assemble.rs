@@ -2,23 +2,23 @@
 
 use super::kinematics::{quaternion, store};
 use super::mjcf::ordered;
-use super::model::{Body, Dof, Geom, Joint, Kind, Model, Tree};
+use super::model::{Body, Dof, Geom, Joint, JointKind, Model, KinematicTree};
 use glam::{Quat, Vec3};
 use std::ops::Range;
 
-/// A model and where it goes.
+/// A model and where it is put.
 pub struct Part<'a> {
-    /// Goes before the names of its bodies, joints and geoms.
+    /// Prefix of the names of its bodies, joints and geoms.
     pub prefix: &'a str,
     pub model: &'a Model,
-    /// Where its origin goes, m.
-    pub place: Vec3,
-    /// About the vertical, rad.
-    pub turn: f32,
+    /// Position of its origin in the world, m.
+    pub position: Vec3,
+    /// Rotation about the vertical, rad.
+    pub yaw: f32,
 }
 
-/// One world of all parts, on the ground of the first: what stands still in the others is left out.
-/// What moves may touch whatever of other parts there is.
+/// Joins all parts in one world, on the ground of the first: what stands still in the others is left out.
+/// What moves may touch everything of the other parts.
 pub fn assemble(parts: &[Part]) -> Model {
     let mut world = Model::default();
     for part in parts {
@@ -32,24 +32,24 @@ pub fn assemble(parts: &[Part]) -> Model {
 
 fn add(world: &mut Model, part: &Part) {
     let model = part.model;
-    let before = Before::of(world);
-    touch(world, part, &before);
-    let bodies = model.bodies.iter().map(|body| before.body(part, body));
+    let offsets = Offsets::of(world);
+    touch(world, part, &offsets);
+    let bodies = model.bodies.iter().map(|body| offsets.body(part, body));
     world.bodies.extend(bodies);
-    let joints = model.joints.iter().map(|joint| before.joint(part, joint));
+    let joints = model.joints.iter().map(|joint| offsets.joint(part, joint));
     world.joints.extend(joints);
     world
         .dofs
-        .extend(model.dofs.iter().map(|dof| before.dof(dof)));
-    world.trees.extend(model.trees.iter().map(|tree| Tree {
-        bodies: shifted(&tree.bodies, before.bodies),
-        dofs: shifted(&tree.dofs, before.dofs),
+        .extend(model.dofs.iter().map(|dof| offsets.dof(dof)));
+    world.trees.extend(model.trees.iter().map(|tree| KinematicTree {
+        bodies: shifted(&tree.bodies, offsets.bodies),
+        dofs: shifted(&tree.dofs, offsets.dofs),
     }));
-    world.start.extend(start(part));
+    world.qpos0.extend(qpos0(part));
 }
 
-/// How much there was before a part came.
-struct Before {
+/// What a world holds when a part is added to it.
+struct Offsets {
     bodies: usize,
     joints: usize,
     dofs: usize,
@@ -58,15 +58,15 @@ struct Before {
     packed: usize,
 }
 
-impl Before {
-    fn of(world: &Model) -> Before {
-        Before {
+impl Offsets {
+    fn of(world: &Model) -> Offsets {
+        Offsets {
             bodies: world.bodies.len(),
             joints: world.joints.len(),
             dofs: world.dofs.len(),
             trees: world.trees.len(),
-            positions: world.positions(),
-            packed: world.packed(),
+            positions: world.nq(),
+            packed: world.nm(),
         }
     }
 
@@ -81,7 +81,7 @@ impl Before {
             ..body.clone()
         };
         if body.parent.is_none() {
-            (body.place, body.turn) = part.moved(body.place, body.turn);
+            (body.position, body.rotation) = part.moved(body.position, body.rotation);
         }
         body
     }
@@ -123,20 +123,20 @@ impl Part<'_> {
         }
     }
 
-    fn moved(&self, place: Vec3, turn: Quat) -> (Vec3, Quat) {
-        let about = Quat::from_rotation_z(self.turn);
-        (self.place + about * place, about * turn)
+    fn moved(&self, position: Vec3, rotation: Quat) -> (Vec3, Quat) {
+        let about = Quat::from_rotation_z(self.yaw);
+        (self.position + about * position, about * rotation)
     }
 }
 
 /// Adds geoms, the pairs they are in among themselves, and those with all that was there.
-fn touch(world: &mut Model, part: &Part, before: &Before) {
+fn touch(world: &mut Model, part: &Part, offsets: &Offsets) {
     let (there, first) = (world.geoms.len(), world.geoms.is_empty());
     let mut places = vec![None; part.model.geoms.len()];
-    for (place, geom) in places.iter_mut().zip(&part.model.geoms) {
+    for (position, geom) in places.iter_mut().zip(&part.model.geoms) {
         if first || geom.body.is_some() {
-            *place = Some(world.geoms.len());
-            world.geoms.push(before.geom(part, geom));
+            *position = Some(world.geoms.len());
+            world.geoms.push(offsets.geom(part, geom));
         }
     }
     let own = part.model.pairs.iter();
@@ -148,20 +148,20 @@ fn touch(world: &mut Model, part: &Part, before: &Before) {
 }
 
 /// Positions at the start.
-fn start(part: &Part) -> Vec<f32> {
-    let mut start = part.model.start.clone();
+fn qpos0(part: &Part) -> Vec<f32> {
+    let mut qpos0 = part.model.qpos0.clone();
     for joint in part
         .model
         .joints
         .iter()
-        .filter(|joint| joint.kind == Kind::Free)
+        .filter(|joint| joint.kind == JointKind::Free)
     {
-        let q = &mut start[joint.q..];
-        let (place, turn) = part.moved(Vec3::from_slice(q), quaternion(&q[3..]));
-        q[..3].copy_from_slice(&place.to_array());
-        store(&mut q[3..], turn);
+        let q = &mut qpos0[joint.q..];
+        let (position, rotation) = part.moved(Vec3::from_slice(q), quaternion(&q[3..]));
+        q[..3].copy_from_slice(&position.to_array());
+        store(&mut q[3..], rotation);
     }
-    start
+    qpos0
 }
 
 fn shifted(range: &Range<usize>, by: usize) -> Range<usize> {

@@ -1,19 +1,19 @@
-//! Where the shapes of a world touch, as MuJoCo finds it: points midway between two surfaces.
+//! Contacts between the shapes of a world, as MuJoCo detects them: points midway between two surfaces.
 
 mod box_box;
 mod plane;
 mod capsule;
 mod capsule_box;
 
-use super::model::{Geom, Model, Shape};
+use super::model::{Geom, Model, GeomShape};
 use super::pose::Pose;
 use glam::{Mat3, Vec3};
 
 /// A point where one shape reaches into another.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Touch {
+pub struct ContactPoint {
     /// Midway between the two surfaces.
-    pub place: Vec3,
+    pub position: Vec3,
     /// From the first shape to the second.
     pub normal: Vec3,
     /// Across the normal; the second tangent is normal x tangent.
@@ -22,14 +22,14 @@ pub struct Touch {
     pub distance: f32,
 }
 
-impl Touch {
-    fn new(place: Vec3, normal: Vec3, distance: f32) -> Touch {
+impl ContactPoint {
+    fn new(position: Vec3, normal: Vec3, distance: f32) -> ContactPoint {
         let tangent = match normal.y.abs() < 0.5 {
             true => across(normal, Vec3::Y),
             false => across(normal, Vec3::Z),
         };
-        Touch {
-            place,
+        ContactPoint {
+            position,
             normal,
             tangent,
             distance,
@@ -47,36 +47,39 @@ fn sign(value: f32) -> f32 {
     if value < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// Points of contact that a pair has at most.
-pub const MOST: usize = 8;
+/// Contact points of a pair at most.
+pub const MAX_POINTS: usize = 8;
 
-/// The touches of a pair.
+/// The contact points of a pair.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Touches {
-    touches: [Touch; MOST],
-    numbers: [u32; MOST],
+pub struct ContactManifold {
+    points: [ContactPoint; MAX_POINTS],
+    numbers: [u32; MAX_POINTS],
     len: usize,
 }
 
-impl Touches {
-    /// Adds a touch, unless it does not touch. Its number, less than [`MOST`], tells it from the
-    /// others of the pair, from step to step.
-    fn add(&mut self, number: usize, touch: Touch) {
-        if touch.distance < 0.0 && self.len < MOST {
-            self.touches[self.len] = touch;
+impl ContactManifold {
+    /// Adds a point, unless the shapes are apart there. Its number, less than [`MAX_POINTS`], tells it
+    /// from the others of the pair, from step to step.
+    fn add(&mut self, number: usize, point: ContactPoint) {
+        if point.distance < 0.0 && self.len < MAX_POINTS {
+            self.points[self.len] = point;
             self.numbers[self.len] = number as u32;
             self.len += 1;
         }
     }
 
+    /// Removes all points.
     pub fn clear(&mut self) {
         self.len = 0;
     }
 
-    pub fn as_slice(&self) -> &[Touch] {
-        &self.touches[..self.len]
+    /// The points.
+    pub fn as_slice(&self) -> &[ContactPoint] {
+        &self.points[..self.len]
     }
 
+    /// The numbers of the points.
     pub fn numbers(&self) -> &[u32] {
         &self.numbers[..self.len]
     }
@@ -84,13 +87,13 @@ impl Touches {
 
 /// A geom in the world.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed {
-    pub shape: Shape,
-    pub place: Vec3,
-    pub turn: Mat3,
+pub struct WorldGeom {
+    pub shape: GeomShape,
+    pub position: Vec3,
+    pub rotation: Mat3,
 }
 
-/// A capsule in the world, or a sphere: one of no length.
+/// A capsule in the world, or a sphere: a capsule of zero length.
 struct Capsule {
     centre: Vec3,
     axis: Vec3,
@@ -111,29 +114,29 @@ impl Capsule {
 /// A box in the world.
 struct Cuboid {
     centre: Vec3,
-    turn: Mat3,
+    rotation: Mat3,
     half: Vec3,
 }
 
-impl Placed {
-    fn of(geom: &Geom, poses: &[Pose]) -> Placed {
+impl WorldGeom {
+    fn new(geom: &Geom, poses: &[Pose]) -> WorldGeom {
         let pose = geom.pose(poses);
-        Placed {
+        WorldGeom {
             shape: geom.shape,
-            place: pose.place,
-            turn: Mat3::from_quat(pose.turn),
+            position: pose.position,
+            rotation: Mat3::from_quat(pose.rotation),
         }
     }
 
     fn capsule(&self) -> Capsule {
         let (radius, half) = match self.shape {
-            Shape::Sphere { radius } => (radius, 0.0),
-            Shape::Capsule { radius, half } => (radius, half),
-            _ => unreachable!("a round shape"),
+            GeomShape::Sphere { radius } => (radius, 0.0),
+            GeomShape::Capsule { radius, half } => (radius, half),
+            _ => unreachable!("a capsule or a sphere"),
         };
         Capsule {
-            centre: self.place,
-            axis: self.turn.z_axis,
+            centre: self.position,
+            axis: self.rotation.z_axis,
             half,
             radius,
         }
@@ -141,107 +144,109 @@ impl Placed {
 
     fn cuboid(&self, half: Vec3) -> Cuboid {
         Cuboid {
-            centre: self.place,
-            turn: self.turn,
+            centre: self.position,
+            rotation: self.rotation,
             half,
         }
     }
 
-    /// Whether a sphere around the other leaves no doubt that they do not touch.
-    fn clear_of(&self, other: &Placed, reach: f32) -> bool {
-        let between = other.place - self.place;
+    /// Whether bounding spheres, of radii with this `sum`, or a plane and a sphere, are apart.
+    fn bounding_spheres_apart(&self, other: &WorldGeom, sum: f32) -> bool {
+        let between = other.position - self.position;
         match self.shape {
-            Shape::Plane => self.turn.z_axis.dot(between) > reach,
-            _ => between.length_squared() > reach * reach,
+            GeomShape::Plane => self.rotation.z_axis.dot(between) > sum,
+            _ => between.length_squared() > sum * sum,
         }
     }
 }
 
-/// Pairs of shapes that are compared alike, in the order in which a model has its pairs.
+/// Which shapes a pair is of, in the order in which a model has its pairs. Spheres are capsules of zero
+/// length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Family {
-    PlaneRound,
+pub enum PairKind {
+    PlaneCapsule,
     PlaneBox,
-    RoundRound,
-    RoundBox,
+    CapsuleCapsule,
+    CapsuleBox,
     BoxBox,
 }
 
-impl Family {
-    /// Of two shapes, the first of which comes first in [`Shape`]. Two planes, which never meet, count as
-    /// if the second were round.
-    pub fn of(shapes: [Shape; 2]) -> Family {
+impl PairKind {
+    /// The kind of two shapes, the first of which comes first in [`GeomShape`]. Two planes, which never
+    /// meet, count as if the second were a capsule.
+    pub fn of(shapes: [GeomShape; 2]) -> PairKind {
         match shapes {
-            [Shape::Plane, Shape::Box { .. }] => Family::PlaneBox,
-            [Shape::Plane, _] => Family::PlaneRound,
-            [Shape::Box { .. }, _] => Family::BoxBox,
-            [_, Shape::Box { .. }] => Family::RoundBox,
-            _ => Family::RoundRound,
+            [GeomShape::Plane, GeomShape::Box { .. }] => PairKind::PlaneBox,
+            [GeomShape::Plane, _] => PairKind::PlaneCapsule,
+            [GeomShape::Box { .. }, _] => PairKind::BoxBox,
+            [_, GeomShape::Box { .. }] => PairKind::CapsuleBox,
+            _ => PairKind::CapsuleCapsule,
         }
     }
 }
 
-/// Adds the touches of two shapes, the first of which comes first in [`Shape`].
-pub fn collide(first: &Placed, second: &Placed, out: &mut Touches) {
+/// Adds the contact points of two shapes, the first of which comes first in [`GeomShape`].
+pub fn collide(first: &WorldGeom, second: &WorldGeom, out: &mut ContactManifold) {
     match (first.shape, second.shape) {
-        (_, Shape::Plane) => {}
-        (Shape::Plane, Shape::Box { half }) => plane::cuboid(first, &second.cuboid(half), out),
-        (Shape::Plane, _) => plane::capsule(first, &second.capsule(), out),
-        (Shape::Box { half: one }, Shape::Box { half: other }) => {
+        (_, GeomShape::Plane) => {}
+        (GeomShape::Plane, GeomShape::Box { half }) => plane::cuboid(first, &second.cuboid(half), out),
+        (GeomShape::Plane, _) => plane::capsule(first, &second.capsule(), out),
+        (GeomShape::Box { half: one }, GeomShape::Box { half: other }) => {
             box_box::box_box(&first.cuboid(one), &second.cuboid(other), out);
         }
-        (_, Shape::Box { half }) => {
-            capsule_box::round_box(&first.capsule(), &second.cuboid(half), out);
+        (_, GeomShape::Box { half }) => {
+            capsule_box::capsule_box(&first.capsule(), &second.cuboid(half), out);
         }
-        _ => capsule::round_round(&first.capsule(), &second.capsule(), out),
+        _ => capsule::capsule_capsule(&first.capsule(), &second.capsule(), out),
     }
 }
 
 /// The contacts of a world.
 #[derive(Clone, Debug, Default)]
-pub struct Contacts {
-    pub touches: Vec<Touch>,
-    /// Of each touch its pair times [`MOST`] plus its number in the pair: the same from step to step.
-    pub keys: Vec<u32>,
-    /// Touches that found no slot.
+pub struct DetectedContacts {
+    pub points: Vec<ContactPoint>,
+    /// Ids of the points: the pair times [`MAX_POINTS`] plus the number in the pair, the same from step
+    /// to step.
+    pub ids: Vec<u32>,
+    /// Points that found no room.
     pub overflow: u32,
-    geoms: Vec<(Placed, f32)>,
+    geoms: Vec<(WorldGeom, f32)>,
 }
 
-/// Radius of a sphere that holds a shape; of a plane none.
-pub fn reach(shape: Shape) -> f32 {
+/// Radius of a sphere that holds a shape; zero of a plane.
+pub fn bounding_radius(shape: GeomShape) -> f32 {
     match shape {
-        Shape::Plane => 0.0,
-        Shape::Sphere { radius } => radius,
-        Shape::Capsule { radius, half } => radius + half,
-        Shape::Box { half } => half.length(),
+        GeomShape::Plane => 0.0,
+        GeomShape::Sphere { radius } => radius,
+        GeomShape::Capsule { radius, half } => radius + half,
+        GeomShape::Box { half } => half.length(),
     }
 }
 
-/// Finds the contacts of a world whose bodies have these poses, the first `slots` of them in the
+/// Detects the contacts of a world whose bodies have these poses, the first `max_contacts` of them in the
 /// order of the model's pairs.
-pub fn find(model: &Model, poses: &[Pose], slots: usize, out: &mut Contacts) {
-    out.touches.clear();
-    out.keys.clear();
+pub fn detect_contacts(model: &Model, poses: &[Pose], max_contacts: usize, out: &mut DetectedContacts) {
+    out.points.clear();
+    out.ids.clear();
     out.overflow = 0;
     out.geoms.clear();
     let geoms = model.geoms.iter();
     out.geoms
-        .extend(geoms.map(|geom| (Placed::of(geom, poses), reach(geom.shape))));
-    let mut touches = Touches::default();
+        .extend(geoms.map(|geom| (WorldGeom::new(geom, poses), bounding_radius(geom.shape))));
+    let mut manifold = ContactManifold::default();
     for (pair, &[first, second]) in model.pairs.iter().enumerate() {
         let ((first, one), (second, other)) = (&out.geoms[first], &out.geoms[second]);
-        if first.clear_of(second, one + other) {
+        if first.bounding_spheres_apart(second, one + other) {
             continue;
         }
-        touches.clear();
-        collide(first, second, &mut touches);
-        let free = slots - out.touches.len();
-        let kept = touches.len.min(free);
-        out.touches.extend_from_slice(&touches.as_slice()[..kept]);
-        let numbers = &touches.numbers()[..kept];
-        out.keys
-            .extend(numbers.iter().map(|number| (pair * MOST) as u32 + number));
-        out.overflow += (touches.len - kept) as u32;
+        manifold.clear();
+        collide(first, second, &mut manifold);
+        let free = max_contacts - out.points.len();
+        let kept = manifold.len.min(free);
+        out.points.extend_from_slice(&manifold.as_slice()[..kept]);
+        let numbers = &manifold.numbers()[..kept];
+        out.ids
+            .extend(numbers.iter().map(|number| (pair * MAX_POINTS) as u32 + number));
+        out.overflow += (manifold.len - kept) as u32;
     }
 }

@@ -1,17 +1,17 @@
 //! Joint limits and contacts as rows of a soft constraint problem (Todorov, "Convex and analytically
 //! invertible dynamics with contacts and constraints", ICRA 2014, as MuJoCo computes it).
 
-use super::collision::Contacts;
+use super::collision::DetectedContacts;
 use super::drive::rotation_vector;
-use super::factor::{LANES, weigh_lanes};
+use super::factor::{LANES, solve_lt_lanes};
 use super::kinematics::{origin, quaternion};
-use super::model::{Kind, Model, Softness};
+use super::model::{JointKind, Model, SolverParams};
 use super::spatial::Spatial;
 use glam::Vec3;
 
 /// The least regularisation, 1/kg: what nothing can move is not divided by zero, and the forces on it are such
 /// that single precision can tell those of opposite edges apart. MuJoCo's, in double precision, is 1e-15.
-const SOFTEST: f32 = 1e-6;
+const MIN_REGULARIZATION: f32 = 1e-6;
 
 /// Directions of a contact: the normal and two tangents.
 pub const DIRECTIONS: usize = 3;
@@ -19,49 +19,51 @@ pub const DIRECTIONS: usize = 3;
 /// A row's numbers, in lanes.
 pub type Lane = [f32; 8];
 
-/// Rows `[rows][stride]`, each a vector over the degrees of freedom, padded with zeros.
+/// Rows of the constraint problem, `[rows][stride]`, each a vector over the degrees of freedom padded with
+/// zeros.
 #[derive(Clone, Debug, Default)]
-pub struct Rows {
+pub struct ConstraintRows {
     pub stride: usize,
     pub len: usize,
-    /// How degrees of freedom move the constrained distance, J; mass-weighted once all are there, which
-    /// is also how a unit force along the row accelerates them.
+    /// How degrees of freedom move the constrained distance, J; whitened once all are there, which is also
+    /// how a unit force along the row accelerates them.
     pub values: Vec<Lane>,
 }
 
 /// A joint at the end of its range: one row.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Limit {
+pub struct LimitConstraint {
     pub joint: usize,
     pub row: usize,
-    /// Acceleration it asks for.
+    /// Acceleration that it demands.
     pub target: f32,
-    /// Regularisation, added to the row's own response.
-    pub softness: f32,
+    /// Regularisation R, added to the row's own response.
+    pub regularization: f32,
     pub force: f32,
 }
 
 /// A point of contact: a row for the normal, and one for each tangent.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Contact {
+pub struct ContactConstraint {
     pub row: usize,
     /// 0 if it slides freely.
     pub friction: f32,
-    /// Acceleration it asks for along its directions.
+    /// Acceleration that it demands along its directions.
     pub target: [f32; DIRECTIONS],
-    pub softness: f32,
-    /// Of the pyramid's edges: normal plus and minus friction times each tangent; without friction
-    /// the first alone.
+    /// Regularisation R of every edge.
+    pub regularization: f32,
+    /// Forces of the pyramid's edges: normal plus and minus friction times each tangent; without
+    /// friction the first alone.
     pub forces: [f32; 4],
 }
 
 /// Spring and damper of a constraint (stiffness, damping), and its impedance, at `distance`.
-fn response(softness: &Softness, distance: f32, dt: f32) -> ([f32; 2], f32) {
-    let [low, high, width, middle, power] = softness.impedance;
+fn response(params: &SolverParams, distance: f32, dt: f32) -> ([f32; 2], f32) {
+    let [low, high, width, middle, power] = params.solimp;
     let (low, high) = (low.clamp(1e-4, 0.9999), high.clamp(1e-4, 0.9999));
     // MuJoCo's `refsafe`: no stiffer than two steps can follow.
-    let time = softness.spring[0].max(2.0 * dt);
-    let ratio = softness.spring[1];
+    let time = params.solref[0].max(2.0 * dt);
+    let ratio = params.solref[1];
     let stiffness = 1.0 / (high * high * time * time * ratio * ratio);
     let damping = 2.0 / (high * time);
     let x = (distance.abs() / width.max(1e-15)).min(1.0);
@@ -75,11 +77,12 @@ fn response(softness: &Softness, distance: f32, dt: f32) -> ([f32; 2], f32) {
     ([stiffness, damping], low + rise * (high - low))
 }
 
-impl Rows {
-    pub fn new(dofs: usize) -> Rows {
-        Rows {
+impl ConstraintRows {
+    /// No rows, of `dofs` degrees of freedom.
+    pub fn new(dofs: usize) -> ConstraintRows {
+        ConstraintRows {
             stride: dofs.div_ceil(LANE),
-            ..Rows::default()
+            ..ConstraintRows::default()
         }
     }
 
@@ -88,7 +91,7 @@ impl Rows {
         self.values.clear();
     }
 
-    /// A new row of zeros.
+    /// Adds a row of zeros and returns its index.
     pub fn add(&mut self) -> usize {
         self.len += 1;
         self.values.resize(self.len * self.stride, [0.0; LANE]);
@@ -107,8 +110,8 @@ impl Rows {
         self.row(row).iter().zip(v).map(|(j, v)| j * v).sum()
     }
 
-    /// Turns all rows into mass-weighted ones. `block` is scratch, `[dofs]`.
-    pub fn weigh(
+    /// Whitens all rows: J becomes J L^-1. `block` is scratch, `[dofs]`.
+    pub fn whiten(
         &mut self,
         model: &Model,
         columns: &[usize],
@@ -125,7 +128,7 @@ impl Rows {
             for x in block.iter_mut() {
                 x[lanes..].fill(0.0);
             }
-            weigh_lanes(model, columns, factors, block);
+            solve_lt_lanes(model, columns, factors, block);
             for lane in 0..lanes {
                 for (value, x) in self.row_mut(first + lane).iter_mut().zip(block.iter()) {
                     *value = x[lane];
@@ -139,23 +142,23 @@ const LANE: usize = std::mem::size_of::<Lane>() / 4;
 
 /// Adds a row for every joint that is past its range. `forces`, `[joints]`, are those of the step
 /// before.
-pub fn limits(
+pub fn limit_constraints(
     model: &Model,
     q: &[f32],
     v: &[f32],
     forces: &[f32],
     dt: f32,
-    rows: &mut Rows,
-    limits: &mut Vec<Limit>,
+    rows: &mut ConstraintRows,
+    limits: &mut Vec<LimitConstraint>,
 ) {
     for (index, joint) in model.joints.iter().enumerate() {
         let Some([low, high]) = joint.range else {
             continue;
         };
         let (distance, axis) = match joint.kind {
-            Kind::Ball => {
-                let turned = rotation_vector(quaternion(&q[joint.q..]).normalize());
-                (high - turned.length(), -turned.normalize_or_zero())
+            JointKind::Ball => {
+                let rotation = rotation_vector(quaternion(&q[joint.q..]).normalize());
+                (high - rotation.length(), -rotation.normalize_or_zero())
             }
             _ => {
                 let angle = q[joint.q];
@@ -169,41 +172,40 @@ pub fn limits(
             continue;
         }
         let row = rows.add();
-        let dofs = joint.kind.dofs();
+        let dofs = joint.kind.nv();
         let axis = axis.to_array();
         rows.row_mut(row)[joint.v..][..dofs].copy_from_slice(&axis[..dofs]);
-        let ([stiffness, damping], impedance) = response(&joint.softness, distance, dt);
-        let inverse_mass = model.dofs[joint.v].looseness;
-        limits.push(Limit {
+        let ([stiffness, damping], impedance) = response(&joint.solver_params, distance, dt);
+        let inverse_mass = model.dofs[joint.v].invweight0;
+        limits.push(LimitConstraint {
             joint: index,
             row,
             target: -damping * rows.velocity(row, v) - stiffness * impedance * distance,
-            softness: ((1.0 - impedance) / impedance * inverse_mass).max(SOFTEST),
+            regularization: ((1.0 - impedance) / impedance * inverse_mass).max(MIN_REGULARIZATION),
             force: forces[index],
         });
     }
 }
 
-/// Adds the rows of every contact. `warm` finds a contact's forces of the step before by its key.
-#[allow(clippy::too_many_arguments)]
-pub fn contacts(
+/// Adds the rows of every contact. `warm_start` finds a contact's forces of the step before by its id.
+pub fn contact_constraints(
     model: &Model,
     q: &[f32],
     v: &[f32],
     axes: &[Spatial],
-    found: &Contacts,
-    warm: impl Fn(u32) -> [f32; 4],
+    found: &DetectedContacts,
+    warm_start: impl Fn(u32) -> [f32; 4],
     dt: f32,
-    rows: &mut Rows,
-    contacts: &mut Vec<Contact>,
+    rows: &mut ConstraintRows,
+    contacts: &mut Vec<ContactConstraint>,
 ) {
-    for (touch, &key) in found.touches.iter().zip(&found.keys) {
-        let [first, second] = model.pairs[(key / 8) as usize].map(|geom| &model.geoms[geom]);
-        let (friction, softness) = first.mixed(second);
+    for (point, &id) in found.points.iter().zip(&found.ids) {
+        let [first, second] = model.pairs[(id / 8) as usize].map(|geom| &model.geoms[geom]);
+        let (friction, params) = first.mixed(second);
         let directions = [
-            touch.normal,
-            touch.tangent,
-            touch.normal.cross(touch.tangent),
+            point.normal,
+            point.tangent,
+            point.normal.cross(point.tangent),
         ];
         let row = rows.add();
         rows.add();
@@ -215,37 +217,36 @@ pub fn contacts(
                     q,
                     axes,
                     body,
-                    touch.place,
+                    point.position,
                     directions.map(|d| d * sign),
                     row,
                     rows,
                 );
             }
         }
-        let ([stiffness, damping], impedance) = response(&softness, touch.distance, dt);
-        let inverse_mass = model.looseness(first) + model.looseness(second);
+        let ([stiffness, damping], impedance) = response(&params, point.distance, dt);
+        let inverse_mass = model.invweight0(first) + model.invweight0(second);
         let regular = (1.0 - impedance) / impedance * inverse_mass;
         let speed = |direction| rows.velocity(row + direction, v);
-        contacts.push(Contact {
+        contacts.push(ContactConstraint {
             row,
             friction,
             target: [
-                -damping * speed(0) - stiffness * impedance * touch.distance,
+                -damping * speed(0) - stiffness * impedance * point.distance,
                 -damping * speed(1),
                 -damping * speed(2),
             ],
-            softness: match friction > 0.0 {
+            regularization: match friction > 0.0 {
                 true => 2.0 * friction * friction * (1.0 + friction * friction) * regular,
                 false => regular,
             }
-            .max(SOFTEST),
-            forces: warm(key),
+            .max(MIN_REGULARIZATION),
+            forces: warm_start(id),
         });
     }
 }
 
 /// Adds to three rows how a point of a body moves along three directions.
-#[allow(clippy::too_many_arguments)]
 fn add_point(
     model: &Model,
     q: &[f32],
@@ -254,12 +255,12 @@ fn add_point(
     point: Vec3,
     directions: [Vec3; DIRECTIONS],
     row: usize,
-    rows: &mut Rows,
+    rows: &mut ConstraintRows,
 ) {
     let arm = point - origin(model, model.bodies[body].tree, q);
     let stride = rows.stride * LANE;
     let values = &mut rows.values.as_flattened_mut()[row * stride..][..DIRECTIONS * stride];
-    for dof in model.way(model.bodies[body].last_dof) {
+    for dof in model.dof_ancestors(model.bodies[body].last_dof) {
         let motion = axes[dof].at(arm);
         for (k, direction) in directions.iter().enumerate() {
             values[k * stride + dof] += motion.dot(*direction);

@@ -3,7 +3,7 @@
 //! that resists acceleration like an armature of dt kd + dt^2 kp.
 
 use super::kinematics::quaternion;
-use super::model::{Drive, Joint, Kind, Model};
+use super::model::{Drive, Joint, JointKind, Model};
 use glam::{Quat, Vec3};
 
 /// A drive's force, Nm, and its armature, kg m^2.
@@ -18,12 +18,12 @@ const SMALLEST: f32 = 1e-9;
 
 /// The exponential map's inverse: axis times angle, rad, the angle at most pi.
 #[inline]
-pub fn rotation_vector(turn: Quat) -> Vec3 {
-    let part = Vec3::new(turn.x, turn.y, turn.z);
-    let (part, w) = if turn.w < 0.0 {
-        (-part, -turn.w)
+pub fn rotation_vector(rotation: Quat) -> Vec3 {
+    let part = Vec3::new(rotation.x, rotation.y, rotation.z);
+    let (part, w) = if rotation.w < 0.0 {
+        (-part, -rotation.w)
     } else {
-        (part, turn.w)
+        (part, rotation.w)
     };
     let sine = part.length();
     match sine > SMALLEST {
@@ -36,7 +36,7 @@ pub fn rotation_vector(turn: Quat) -> Vec3 {
 #[inline]
 fn angle(joint: &Joint, axis: usize, q: &[f32]) -> f32 {
     match joint.kind {
-        Kind::Ball => rotation_vector(quaternion(&q[joint.q..]).normalize())[axis],
+        JointKind::Ball => rotation_vector(quaternion(&q[joint.q..]).normalize())[axis],
         _ => q[joint.q],
     }
 }

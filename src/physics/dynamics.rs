@@ -2,7 +2,7 @@
 //! Dynamics Algorithms", tables 5.1 and 6.2), in world axes about each tree's origin.
 
 use super::kinematics::origin;
-use super::model::{Kind, Model};
+use super::model::{JointKind, Model};
 use super::pose::Pose;
 use super::spatial::{Inertia, Spatial};
 use glam::{Mat3, Vec3};
@@ -14,9 +14,9 @@ pub const GRAVITY: f32 = 9.81;
 #[inline]
 pub fn inertias(model: &Model, q: &[f32], poses: &[Pose], inertias: &mut [Inertia]) {
     for (index, body) in model.bodies.iter().enumerate() {
-        let turn = Mat3::from_quat(poses[index].turn);
-        let centre = poses[index].at(body.centre) - origin(model, body.tree, q);
-        let about_centre = turn * body.inertia * turn.transpose();
+        let rotation = Mat3::from_quat(poses[index].rotation);
+        let centre = poses[index].at(body.com) - origin(model, body.tree, q);
+        let about_centre = rotation * body.inertia * rotation.transpose();
         inertias[index] = Inertia::new(body.mass, centre, about_centre);
     }
 }
@@ -44,8 +44,8 @@ pub fn bias(
             None => (Spatial::ZERO, weight),
         };
         for joint in &model.joints[body.joints.clone()] {
-            let mut dofs = joint.v..joint.v + joint.kind.dofs();
-            if joint.kind == Kind::Free {
+            let mut dofs = joint.v..joint.v + joint.kind.nv();
+            if joint.kind == JointKind::Free {
                 // Its translations are along world axes, which do not turn.
                 for dof in dofs.by_ref().take(3) {
                     velocity += axes[dof] * v[dof];
@@ -83,7 +83,7 @@ pub fn mass_matrix(model: &Model, axes: &[Spatial], inertias: &mut [Inertia], ma
         for dof in body.dofs.clone() {
             let momentum = inertias[index].momentum(axes[dof]);
             let row = &mut matrix[model.dofs[dof].row..];
-            for (entry, along) in row.iter_mut().zip(model.way(Some(dof))) {
+            for (entry, along) in row.iter_mut().zip(model.dof_ancestors(Some(dof))) {
                 *entry = momentum.dot(axes[along]);
             }
         }

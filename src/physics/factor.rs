@@ -11,7 +11,7 @@ use multiversion::multiversion;
 /// and so on to the root.
 pub fn columns(model: &Model) -> Vec<usize> {
     let dofs = 0..model.dofs.len();
-    dofs.flat_map(|dof| model.way(Some(dof))).collect()
+    dofs.flat_map(|dof| model.dof_ancestors(Some(dof))).collect()
 }
 
 /// Turns a packed mass matrix into its factor L, the diagonal inverted.
@@ -36,7 +36,7 @@ pub fn factor(model: &Model, columns: &[usize], matrix: &mut [f32]) {
 
 /// x = L^-T x: a force over the degrees of freedom, `[dofs]`, becomes a mass-weighted acceleration.
 #[inline]
-pub fn weigh(model: &Model, columns: &[usize], factors: &[f32], x: &mut [f32]) {
+pub fn solve_lt(model: &Model, columns: &[usize], factors: &[f32], x: &mut [f32]) {
     for (index, dof) in model.dofs.iter().enumerate().rev() {
         let value = x[index] * factors[dof.row];
         x[index] = value;
@@ -48,7 +48,7 @@ pub fn weigh(model: &Model, columns: &[usize], factors: &[f32], x: &mut [f32]) {
 
 /// x = L^-1 x: a mass-weighted acceleration becomes one of the degrees of freedom, `[dofs]`.
 #[inline]
-pub fn unweigh(model: &Model, columns: &[usize], factors: &[f32], x: &mut [f32]) {
+pub fn solve_l(model: &Model, columns: &[usize], factors: &[f32], x: &mut [f32]) {
     for (index, dof) in model.dofs.iter().enumerate() {
         let mut value = x[index];
         for k in 1..dof.depth {
@@ -61,13 +61,13 @@ pub fn unweigh(model: &Model, columns: &[usize], factors: &[f32], x: &mut [f32])
 /// Vectors weighed side by side.
 pub const LANES: usize = 16;
 
-/// [`weigh`] for `LANES` vectors, `x` being `[dofs][LANES]`.
+/// [`solve_lt`] for `LANES` vectors, `x` being `[dofs][LANES]`.
 #[multiversion(targets(
     "x86_64+avx512f+avx512vl+avx512dq+fma",
     "x86_64+avx2+fma",
     "aarch64+neon"
 ))]
-pub fn weigh_lanes(model: &Model, columns: &[usize], factors: &[f32], x: &mut [[f32; LANES]]) {
+pub fn solve_lt_lanes(model: &Model, columns: &[usize], factors: &[f32], x: &mut [[f32; LANES]]) {
     for (index, dof) in model.dofs.iter().enumerate().rev() {
         let value = x[index].map(|value| value * factors[dof.row]);
         x[index] = value;

@@ -1,7 +1,7 @@
 //! One step forward: velocities first, then positions with the new velocities (semi-implicit Euler).
 
 use super::kinematics::{quaternion, store};
-use super::model::{Kind, Model};
+use super::model::{JointKind, Model};
 use glam::{Quat, Vec3};
 
 #[inline]
@@ -18,9 +18,9 @@ pub fn drift(model: &Model, v: &[f32], dt: f32, q: &mut [f32]) {
     for joint in &model.joints {
         let (q, v) = (&mut q[joint.q..], &v[joint.v..]);
         match joint.kind {
-            Kind::Hinge => q[0] += dt * v[0],
-            Kind::Ball => turn(&mut q[..4], &v[..3], dt),
-            Kind::Free => {
+            JointKind::Hinge => q[0] += dt * v[0],
+            JointKind::Ball => turn(&mut q[..4], &v[..3], dt),
+            JointKind::Free => {
                 for axis in 0..3 {
                     q[axis] += dt * v[axis];
                 }

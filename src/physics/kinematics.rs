@@ -1,6 +1,6 @@
 //! Where the bodies are, and which way each degree of freedom moves them.
 
-use super::model::{Joint, Kind, Model};
+use super::model::{Joint, JointKind, Model};
 use super::pose::Pose;
 use super::spatial::Spatial;
 use glam::{Quat, Vec3};
@@ -13,8 +13,8 @@ pub fn quaternion(q: &[f32]) -> Quat {
 
 /// Writes a quaternion where [`quaternion`] reads it.
 #[inline]
-pub fn store(q: &mut [f32], turn: Quat) {
-    q[..4].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z]);
+pub fn store(q: &mut [f32], rotation: Quat) {
+    q[..4].copy_from_slice(&[rotation.w, rotation.x, rotation.y, rotation.z]);
 }
 
 /// The point about which a tree's spatial vectors are taken: where its first body is, if that is
@@ -23,8 +23,8 @@ pub fn store(q: &mut [f32], turn: Quat) {
 pub fn origin(model: &Model, tree: usize, q: &[f32]) -> Vec3 {
     let root = &model.bodies[model.trees[tree].bodies.start];
     match model.joints[root.joints.clone()].first() {
-        Some(joint) if joint.kind == Kind::Free => Vec3::from_slice(&q[joint.q..]),
-        _ => root.place,
+        Some(joint) if joint.kind == JointKind::Free => Vec3::from_slice(&q[joint.q..]),
+        _ => root.position,
     }
 }
 
@@ -35,19 +35,32 @@ pub fn origin(model: &Model, tree: usize, q: &[f32]) -> Vec3 {
 pub fn kinematics(model: &Model, q: &[f32], poses: &mut [Pose], axes: &mut [Spatial]) {
     for (index, body) in model.bodies.iter().enumerate() {
         let fixed = Pose {
-            place: body.place,
-            turn: body.turn,
+            position: body.position,
+            rotation: body.rotation,
         };
         let mut pose = body.parent.map_or(fixed, |parent| poses[parent] * fixed);
         let origin = origin(model, body.tree, q);
         for joint in &model.joints[body.joints.clone()] {
-            let anchor = pose.at(joint.place);
-            let axis = pose.turn * joint.axis;
+            let anchor = pose.at(joint.position);
+            let axis = pose.rotation * joint.axis;
             pose = moved(pose, joint, q);
             swept(joint, &pose, anchor - origin, axis, axes);
         }
-        pose.turn = pose.turn.normalize();
+        pose.rotation = pose.rotation.normalize();
         poses[index] = pose;
+    }
+}
+
+/// Velocities of all bodies, `[bodies]`, about their trees' origins, from those of the degrees of
+/// freedom.
+#[inline]
+pub fn velocities(model: &Model, v: &[f32], axes: &[Spatial], velocities: &mut [Spatial]) {
+    for (index, body) in model.bodies.iter().enumerate() {
+        let mut velocity = body.parent.map_or(Spatial::ZERO, |parent| velocities[parent]);
+        for dof in body.dofs.clone() {
+            velocity += axes[dof] * v[dof];
+        }
+        velocities[index] = velocity;
     }
 }
 
@@ -55,20 +68,20 @@ pub fn kinematics(model: &Model, q: &[f32], poses: &mut [Pose], axes: &mut [Spat
 #[inline]
 fn moved(pose: Pose, joint: &Joint, q: &[f32]) -> Pose {
     let at = &q[joint.q..];
-    let turn = match joint.kind {
-        Kind::Free => {
+    let rotation = match joint.kind {
+        JointKind::Free => {
             return Pose {
-                place: Vec3::new(at[0], at[1], at[2]),
-                turn: quaternion(&at[3..]).normalize(),
+                position: Vec3::new(at[0], at[1], at[2]),
+                rotation: quaternion(&at[3..]).normalize(),
             };
         }
-        Kind::Ball => quaternion(at).normalize(),
-        Kind::Hinge => Quat::from_axis_angle(joint.axis, at[0]),
+        JointKind::Ball => quaternion(at).normalize(),
+        JointKind::Hinge => Quat::from_axis_angle(joint.axis, at[0]),
     };
-    let turned = pose.turn * turn;
+    let turned = pose.rotation * rotation;
     Pose {
-        place: pose.at(joint.place) - turned * joint.place,
-        turn: turned,
+        position: pose.at(joint.position) - turned * joint.position,
+        rotation: turned,
     }
 }
 
@@ -81,21 +94,21 @@ fn swept(joint: &Joint, pose: &Pose, anchor: Vec3, axis: Vec3, axes: &mut [Spati
     };
     let own = [Vec3::X, Vec3::Y, Vec3::Z];
     match joint.kind {
-        Kind::Free => {
+        JointKind::Free => {
             for (k, axis) in own.into_iter().enumerate() {
                 axes[joint.v + k] = Spatial {
                     angular: Vec3::ZERO,
                     linear: axis,
                 };
                 // A root turns about its own place, which is the origin.
-                axes[joint.v + 3 + k] = about(pose.turn * axis, Vec3::ZERO);
+                axes[joint.v + 3 + k] = about(pose.rotation * axis, Vec3::ZERO);
             }
         }
-        Kind::Ball => {
+        JointKind::Ball => {
             for (k, axis) in own.into_iter().enumerate() {
-                axes[joint.v + k] = about(pose.turn * axis, anchor);
+                axes[joint.v + k] = about(pose.rotation * axis, anchor);
             }
         }
-        Kind::Hinge => axes[joint.v] = about(axis, anchor),
+        JointKind::Hinge => axes[joint.v] = about(axis, anchor),
     }
 }

@@ -15,25 +15,26 @@ mod grammar;
 mod joint;
 mod mass;
 mod settings;
+mod shape;
 mod exclude;
 mod worldbody;
 
 use super::model::Model;
 use class::Classes;
 use element::Element;
-pub use error::{Error, Result};
+pub use error::{MjcfError, Result};
 use grammar::MUJOCO;
 use roxmltree::Document;
-use settings::Settings;
+use settings::MjcfSettings;
 use std::io::Read;
 use std::path::Path;
 pub use exclude::ordered;
-use worldbody::World;
+use worldbody::WorldBuilder;
 
 pub const MAX_BYTES: u64 = 1 << 20;
 
 pub fn read(path: &Path) -> Result<Model> {
-    let failed = |error| Error::Read {
+    let failed = |error| MjcfError::Read {
         path: path.to_path_buf(),
         error,
     };
@@ -45,7 +46,7 @@ pub fn read(path: &Path) -> Result<Model> {
     refuse_large(bytes.len(), path)?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        Error::Mjcf {
+        MjcfError::Mjcf {
             path: path.to_path_buf(),
             line: 1 + good.iter().filter(|byte| **byte == b'\n').count() as u32,
             problem: "bytes that are not UTF-8; save the file as UTF-8".to_string(),
@@ -57,7 +58,7 @@ pub fn read(path: &Path) -> Result<Model> {
 fn refuse_large(bytes: usize, path: &Path) -> Result<()> {
     match bytes as u64 <= MAX_BYTES {
         true => Ok(()),
-        false => Err(Error::TooLarge {
+        false => Err(MjcfError::TooLarge {
             path: path.to_path_buf(),
             limit: MAX_BYTES,
         }),
@@ -67,7 +68,7 @@ fn refuse_large(bytes: usize, path: &Path) -> Result<()> {
 /// `file` is what errors call it.
 pub fn parse(text: &str, file: &Path) -> Result<Model> {
     refuse_large(text.len(), file)?;
-    let document = Document::parse(text).map_err(|error| Error::Mjcf {
+    let document = Document::parse(text).map_err(|error| MjcfError::Mjcf {
         path: file.to_path_buf(),
         line: error.pos().row,
         problem: format!("this is no valid XML: {error}"),
@@ -77,13 +78,13 @@ pub fn parse(text: &str, file: &Path) -> Result<Model> {
         return Err(root.error("is not what MJCF begins with: <mujoco>"));
     }
     root.check(&MUJOCO)?;
-    let settings = Settings::read(&root)?;
+    let settings = MjcfSettings::read(&root)?;
     let classes = Classes::read(&root)?;
-    let mut world = World::read(&root, &settings, &classes)?;
+    let mut world = WorldBuilder::read(&root, &settings, &classes)?;
     world.drives(&root)?;
     world.pairs(&root)?;
     let mut model = world.model;
     model.name = root.word("model").unwrap_or_default().to_string();
-    model.loosen();
+    model.set_invweight0();
     Ok(model)
 }

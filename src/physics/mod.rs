@@ -6,8 +6,8 @@
 //! - [`kinematics`], [`dynamics`], [`factor`], [`drive`]: from a state to accelerations without contact;
 //! - [`collision`], [`constraints`], [`pgs`]: contacts and joint limits, and the forces they take;
 //! - [`integrate`], [`simulator`]: a step of one world, from beginning to end;
-//! - [`motion_clip`], [`retarget`], [`motion_library`]: recordings in the body, and what to draw from;
-//! - [`model_table`]: the model in words, for shaders.
+//! - [`motion_clip`], [`retarget`], [`motion_library`]: recordings in the body, and what to draw from.
+
 
 pub mod assemble;
 pub mod collision;
@@ -29,4 +29,3 @@ pub mod retarget;
 pub mod scenes;
 pub mod spatial;
 pub mod pgs;
-pub mod model_table;

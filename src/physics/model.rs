@@ -10,20 +10,22 @@ use super::pose::Pose;
 use glam::{Mat3, Quat, Vec3};
 use std::ops::Range;
 
+/// A compiled model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
     pub name: String,
+    /// Parents before their children.
     pub bodies: Vec<Body>,
-    /// In the order of their bodies; a body may have several hinges, the first nearest its parent.
+    /// Joints in the order of their bodies; a body may have several hinges, the first nearest its parent.
     pub joints: Vec<Joint>,
     pub dofs: Vec<Dof>,
     pub geoms: Vec<Geom>,
-    /// One for each body without a parent.
-    pub trees: Vec<Tree>,
-    /// Pairs of geoms that may touch: the one whose shape comes first in [`Shape`] comes first.
+    /// One tree for each body without a parent.
+    pub trees: Vec<KinematicTree>,
+    /// Pairs of geoms that may touch: the one whose shape comes first in [`GeomShape`] comes first.
     pub pairs: Vec<[usize; 2]>,
     /// Positions at the start, as the file has them.
-    pub start: Vec<f32>,
+    pub qpos0: Vec<f32>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,11 +33,11 @@ pub struct Body {
     pub name: String,
     pub parent: Option<usize>,
     /// In the parent's frame, all joints at zero.
-    pub place: Vec3,
-    pub turn: Quat,
+    pub position: Vec3,
+    pub rotation: Quat,
     pub mass: f32,
     /// Centre of mass.
-    pub centre: Vec3,
+    pub com: Vec3,
     /// About the centre of mass, along the body's axes, kg m^2.
     pub inertia: Mat3,
     pub joints: Range<usize>,
@@ -45,67 +47,73 @@ pub struct Body {
     pub last_dof: Option<usize>,
     /// Mean inverse mass that a force at the centre of mass meets at the start, 1/kg (MuJoCo's
     /// `body_invweight0`, translation).
-    pub looseness: f32,
+    pub invweight0: f32,
 }
 
+/// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum JointKind {
     Free,
     Ball,
     Hinge,
 }
 
-impl Kind {
-    pub fn positions(self) -> usize {
+impl JointKind {
+    /// Positions in `q`.
+    pub fn nq(self) -> usize {
         match self {
-            Kind::Free => 7,
-            Kind::Ball => 4,
-            Kind::Hinge => 1,
+            JointKind::Free => 7,
+            JointKind::Ball => 4,
+            JointKind::Hinge => 1,
         }
     }
 
-    pub fn dofs(self) -> usize {
+    /// Degrees of freedom.
+    pub fn nv(self) -> usize {
         match self {
-            Kind::Free => 6,
-            Kind::Ball => 3,
-            Kind::Hinge => 1,
+            JointKind::Free => 6,
+            JointKind::Ball => 3,
+            JointKind::Hinge => 1,
         }
     }
 }
 
+/// A joint between a body and its parent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     pub name: String,
-    pub kind: Kind,
+    pub kind: JointKind,
     pub body: usize,
-    /// Anchor in the body's frame.
-    pub place: Vec3,
-    /// Of a hinge: unit, in the body's frame.
+    /// Anchor in the body's frame, m.
+    pub position: Vec3,
+    /// Unit axis of a hinge, in the body's frame.
     pub axis: Vec3,
-    /// Of a hinge its smallest and largest angle, of a ball zero and its largest; rad.
+    /// Smallest and largest angle of a hinge, zero and the largest angle of a ball; rad.
     pub range: Option<[f32; 2]>,
-    pub softness: Softness,
+    /// How its limit gives way.
+    pub solver_params: SolverParams,
     /// First of its positions in `q`.
     pub q: usize,
     /// First of its degrees of freedom in `v`.
     pub v: usize,
 }
 
+/// A degree of freedom.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dof {
     pub joint: usize,
     pub body: usize,
     /// The next one towards the root.
     pub parent: Option<usize>,
-    /// Of this and all on the way to the root: `depth` entries of a row of the mass matrix.
+    /// Number of degrees of freedom from this one to the root: entries of its row of the mass matrix.
     pub depth: usize,
     /// Where its row begins in the packed mass matrix: itself, its parent, and so on to the root.
     pub row: usize,
-    /// kg m^2 (kg for translations).
+    /// Inertia added to its own, kg m^2 (kg for translations).
     pub armature: f32,
     pub drive: Option<Drive>,
     /// Inverse inertia that a force at it meets at the start (MuJoCo's `dof_invweight0`).
-    pub looseness: f32,
+    pub invweight0: f32,
 }
 
 /// Proportional-derivative control of one degree of freedom.
@@ -119,127 +127,150 @@ pub struct Drive {
     pub limit: f32,
 }
 
-/// How a constraint gives way (MuJoCo's `solref` and `solimp`).
+/// How a constraint gives way, as in MuJoCo.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Softness {
+pub struct SolverParams {
     /// Time constant (s) and damping ratio.
-    pub spring: [f32; 2],
+    pub solref: [f32; 2],
     /// Impedance at depth zero and at `width`, width (m or rad), midpoint, power.
-    pub impedance: [f32; 5],
+    pub solimp: [f32; 5],
 }
 
-impl Default for Softness {
+impl Default for SolverParams {
     fn default() -> Self {
-        Softness {
-            spring: [0.02, 1.0],
-            impedance: [0.9, 0.95, 0.001, 0.5, 2.0],
+        SolverParams {
+            solref: [0.02, 1.0],
+            solimp: [0.9, 0.95, 0.001, 0.5, 2.0],
         }
     }
 }
 
+/// What a geom looks like to others. A sphere is compared as a capsule of zero length.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
+pub enum GeomShape {
     /// The half space below z = 0 of its frame.
     Plane,
     Sphere {
         radius: f32,
     },
-    /// Along z; `half` is half the distance of the two centres.
+    /// A capsule along z; `half` is half the distance of the two centres.
     Capsule {
         radius: f32,
         half: f32,
     },
+    /// `half` are half the lengths of its edges.
     Box {
         half: Vec3,
     },
 }
 
+/// A shape on a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geom {
     pub name: String,
-    /// `None` for what stands still.
+    /// The body it moves with; none if it stands still.
     pub body: Option<usize>,
-    pub shape: Shape,
-    /// In the body's frame.
-    pub place: Vec3,
-    pub turn: Quat,
+    pub shape: GeomShape,
+    /// Position in the body's frame, m.
+    pub position: Vec3,
+    /// Rotation in the body's frame.
+    pub rotation: Quat,
     /// Coefficient of sliding friction; a pair has the larger of two.
     pub friction: f32,
-    /// Slides without friction, unless its partner does not (`condim` 1).
-    pub slippery: bool,
-    pub softness: Softness,
+    /// Whether it slides without friction, unless its partner does not (`condim` 1).
+    pub frictionless: bool,
+    /// How its contacts give way.
+    pub solver_params: SolverParams,
 }
 
+/// A body without a parent and all that hangs on it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tree {
+pub struct KinematicTree {
     pub bodies: Range<usize>,
     pub dofs: Range<usize>,
 }
 
 impl Model {
-    pub fn positions(&self) -> usize {
-        self.joints.iter().map(|joint| joint.kind.positions()).sum()
+    /// Positions of a world.
+    pub fn nq(&self) -> usize {
+        self.joints.iter().map(|joint| joint.kind.nq()).sum()
     }
 
-    pub fn velocities(&self) -> usize {
+    /// Velocities of a world: its degrees of freedom.
+    pub fn nv(&self) -> usize {
         self.dofs.len()
     }
 
-    /// A degree of freedom and those on its way to the root.
+    /// A degree of freedom and its ancestors, up to the root.
     #[inline]
-    pub fn way(&self, dof: Option<usize>) -> impl Iterator<Item = usize> {
+    pub fn dof_ancestors(&self, dof: Option<usize>) -> impl Iterator<Item = usize> {
         std::iter::successors(dof, |&dof| self.dofs[dof].parent)
     }
 
     /// Entries of the packed mass matrix.
-    pub fn packed(&self) -> usize {
+    pub fn nm(&self) -> usize {
         self.dofs.iter().map(|dof| dof.depth).sum()
     }
 
+    /// Mass of all bodies, kg.
     pub fn mass(&self) -> f32 {
         self.bodies.iter().map(|body| body.mass).sum()
     }
 
-    /// Degrees of freedom that are driven: the targets of an action.
-    pub fn driven(&self) -> usize {
+    /// Degrees of freedom that are driven.
+    pub fn nu(&self) -> usize {
         self.dofs.iter().filter(|dof| dof.drive.is_some()).count()
     }
 
-    /// Of what a geom hangs on; none for what stands still.
-    pub fn looseness(&self, geom: &Geom) -> f32 {
-        geom.body.map_or(0.0, |body| self.bodies[body].looseness)
+    /// Inverse weight of the body of a geom; zero for what stands still.
+    pub fn invweight0(&self, geom: &Geom) -> f32 {
+        geom.body.map_or(0.0, |body| self.bodies[body].invweight0)
     }
 
+    /// Index of a body by name.
     pub fn body(&self, name: &str) -> Option<usize> {
         self.bodies.iter().position(|body| body.name == name)
     }
 }
 
-/// The least friction of geoms that are not both slippery (MuJoCo's mjMINMU).
-const SLIGHTEST: f32 = 1e-5;
+/// The least friction of geoms that are not both frictionless (MuJoCo's mjMINMU).
+const MIN_FRICTION: f32 = 1e-5;
 
 impl Geom {
-    /// In the world, its body's pose being among `poses`, `[bodies]`.
+    /// Pose in the world, `poses`, `[bodies]`, being those of the bodies.
     pub fn pose(&self, poses: &[Pose]) -> Pose {
         let own = Pose {
-            place: self.place,
-            turn: self.turn,
+            position: self.position,
+            rotation: self.rotation,
         };
         self.body.map_or(own, |body| poses[body] * own)
     }
 
-    /// Friction and softness where two geoms touch.
-    pub fn mixed(&self, other: &Geom) -> (f32, Softness) {
-        let friction = match self.slippery && other.slippery {
+    /// Height of its lowest point in the world, m.
+    pub fn lowest_point(&self, poses: &[Pose]) -> f32 {
+        let pose = self.pose(poses);
+        let up = pose.rotation.inverse() * Vec3::Z;
+        let below = match self.shape {
+            GeomShape::Plane => 0.0,
+            GeomShape::Sphere { radius } => radius,
+            GeomShape::Capsule { radius, half } => radius + half * up.z.abs(),
+            GeomShape::Box { half } => half.dot(up.abs()),
+        };
+        pose.position.z - below
+    }
+
+    /// Friction and solver parameters where two geoms touch.
+    pub fn mixed(&self, other: &Geom) -> (f32, SolverParams) {
+        let friction = match self.frictionless && other.frictionless {
             true => 0.0,
-            false => self.friction.max(other.friction).max(SLIGHTEST),
+            false => self.friction.max(other.friction).max(MIN_FRICTION),
         };
         let mean = |a: f32, b: f32| 0.5 * (a + b);
-        let (a, b) = (&self.softness, &other.softness);
-        let softness = Softness {
-            spring: std::array::from_fn(|i| mean(a.spring[i], b.spring[i])),
-            impedance: std::array::from_fn(|i| mean(a.impedance[i], b.impedance[i])),
+        let (a, b) = (&self.solver_params, &other.solver_params);
+        let solver_params = SolverParams {
+            solref: std::array::from_fn(|i| mean(a.solref[i], b.solref[i])),
+            solimp: std::array::from_fn(|i| mean(a.solimp[i], b.solimp[i])),
         };
-        (friction, softness)
+        (friction, solver_params)
     }
 }

@@ -2,10 +2,10 @@
 
 use super::drive::rotation_vector;
 use super::kinematics::{quaternion, store};
-use super::model::{Kind, Model};
+use super::model::{JointKind, Model};
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct BodyMotion {
+pub struct MotionClip {
     pub name: String,
     /// Frames a second.
     pub rate: f32,
@@ -16,13 +16,13 @@ pub struct BodyMotion {
     pub v: Vec<f32>,
 }
 
-impl BodyMotion {
+impl MotionClip {
     /// With the velocities that its positions, `[frame][positions]`, imply.
-    pub fn new(name: &str, model: &Model, rate: f32, q: Vec<f32>) -> BodyMotion {
-        BodyMotion {
+    pub fn new(name: &str, model: &Model, rate: f32, q: Vec<f32>) -> MotionClip {
+        MotionClip {
             name: name.to_string(),
             rate,
-            frames: q.len() / model.positions(),
+            frames: q.len() / model.nq(),
             v: velocities(model, rate, &q),
             q,
         }
@@ -73,21 +73,21 @@ fn mixed(a: &[f32], b: &[f32], share: f32) -> Vec<f32> {
 /// Where the quaternions are in a model's positions.
 fn turns(model: &Model) -> impl Iterator<Item = usize> {
     model.joints.iter().filter_map(|joint| match joint.kind {
-        Kind::Free => Some(joint.q + 3),
-        Kind::Ball => Some(joint.q),
-        Kind::Hinge => None,
+        JointKind::Free => Some(joint.q + 3),
+        JointKind::Ball => Some(joint.q),
+        JointKind::Hinge => None,
     })
 }
 
-/// The drives' targets that ask for positions, as [`efforts`](super::drive::efforts) reads them.
-pub fn targets(model: &Model, q: &[f32]) -> Vec<f32> {
+/// Targets of the drives for positions `q`, `[nu]`, as [`efforts`](super::drive::efforts) reads them.
+pub fn pd_targets(model: &Model, q: &[f32]) -> Vec<f32> {
     let driven = model.dofs.iter().enumerate();
     let driven = driven.filter(|(_, dof)| dof.drive.is_some());
     driven
         .map(|(index, dof)| {
             let joint = &model.joints[dof.joint];
             match joint.kind {
-                Kind::Ball => rotation_vector(quaternion(&q[joint.q..]))[index - joint.v],
+                JointKind::Ball => rotation_vector(quaternion(&q[joint.q..]))[index - joint.v],
                 _ => q[joint.q],
             }
         })
@@ -97,7 +97,7 @@ pub fn targets(model: &Model, q: &[f32]) -> Vec<f32> {
 /// Velocities `[frame][dofs]` of positions `[frame][positions]`: differences of the frames on
 /// either side, one-sided at the ends.
 fn velocities(model: &Model, rate: f32, q: &[f32]) -> Vec<f32> {
-    let (width, dofs) = (model.positions(), model.velocities());
+    let (width, dofs) = (model.nq(), model.nv());
     let frames = q.len() / width;
     let mut v = vec![0.0; frames * dofs];
     for (frame, v) in v.chunks_exact_mut(dofs).enumerate() {
@@ -118,9 +118,9 @@ fn difference(model: &Model, from: &[f32], to: &[f32], rate: f32, v: &mut [f32])
             (rotation_vector(turn) * rate).to_array()
         };
         match joint.kind {
-            Kind::Hinge => v[0] = (to[0] - from[0]) * rate,
-            Kind::Ball => v[..3].copy_from_slice(&turn(0)),
-            Kind::Free => {
+            JointKind::Hinge => v[0] = (to[0] - from[0]) * rate,
+            JointKind::Ball => v[..3].copy_from_slice(&turn(0)),
+            JointKind::Free => {
                 for axis in 0..3 {
                     v[axis] = (to[axis] - from[axis]) * rate;
                 }

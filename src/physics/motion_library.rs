@@ -1,7 +1,7 @@
 //! Motions to begin from, and to follow: drawn by weight, at any time within.
 
 use super::model::Model;
-use super::motion_clip::BodyMotion;
+use super::motion_clip::MotionClip;
 use super::retarget::{self, retarget};
 use crate::motion::clip::Clip;
 use crate::motion::error as motion;
@@ -11,11 +11,11 @@ use rayon::prelude::*;
 use std::path::Path;
 use std::sync::Arc;
 
-pub type Result<T> = std::result::Result<T, Error>;
+pub type Result<T> = std::result::Result<T, MotionLibraryError>;
 
 /// Why there is no library.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum MotionLibraryError {
     #[error(
         "a library needs motions, and none was given: name BVH files or folders that hold some"
     )]
@@ -25,7 +25,7 @@ pub enum Error {
     #[error("the clip '{clip}' cannot be put into the body: {error}")]
     Retarget {
         clip: String,
-        error: retarget::Error,
+        error: retarget::RetargetError,
     },
     #[error("'{motion}' does not fit the model '{model}': it was made for another")]
     Model { motion: String, model: String },
@@ -44,7 +44,7 @@ pub enum Error {
 #[derive(Clone, Debug)]
 pub struct MotionLibrary {
     model: Arc<Model>,
-    motions: Vec<BodyMotion>,
+    motions: Vec<MotionClip>,
     /// Shares of the weights of each motion and all before it.
     shares: Vec<f32>,
     /// One sentence each: clips left out, T-poses dropped, unusual units.
@@ -84,38 +84,38 @@ impl MotionLibrary {
     ///
     /// # Errors
     /// No motions, motions of another model.
-    pub fn new(motions: Vec<BodyMotion>, model: &Arc<Model>) -> Result<MotionLibrary> {
-        let frames = |motion: &BodyMotion| motion.q.len() / model.positions();
+    pub fn new(motions: Vec<MotionClip>, model: &Arc<Model>) -> Result<MotionLibrary> {
+        let frames = |motion: &MotionClip| motion.q.len() / model.nq();
         if let Some(motion) = motions
             .iter()
             .find(|motion| frames(motion) != motion.frames)
         {
-            return Err(Error::Model {
+            return Err(MotionLibraryError::Model {
                 motion: motion.name.clone(),
                 model: model.name.clone(),
             });
         }
-        let weights: Vec<f32> = motions.iter().map(BodyMotion::seconds).collect();
+        let weights: Vec<f32> = motions.iter().map(MotionClip::seconds).collect();
         let library = MotionLibrary {
             model: model.clone(),
             motions,
             shares: Vec::new(),
             notes: Vec::new(),
         };
-        library.weighted(&weights)
+        library.qacc_whitened(&weights)
     }
 
     /// The same motions, drawn by other weights.
     ///
     /// # Errors
     /// Weights that are negative, no numbers, all zero, or not one for each motion.
-    pub fn weighted(mut self, weights: &[f32]) -> Result<MotionLibrary> {
+    pub fn qacc_whitened(mut self, weights: &[f32]) -> Result<MotionLibrary> {
         let motions = &self.motions;
         if motions.is_empty() {
-            return Err(Error::Empty);
+            return Err(MotionLibraryError::Empty);
         }
         if weights.len() != motions.len() {
-            return Err(Error::Weights {
+            return Err(MotionLibraryError::Weights {
                 weights: weights.len(),
                 motions: motions.len(),
             });
@@ -124,7 +124,7 @@ impl MotionLibrary {
         let possible = total > 0.0 && total.is_finite();
         let wrong = weights.iter().position(|&weight| !possible || weight < 0.0);
         if let Some(wrong) = wrong {
-            return Err(Error::Weight {
+            return Err(MotionLibraryError::Weight {
                 motion: motions[wrong].name.clone(),
                 weight: weights[wrong],
                 total,
@@ -138,7 +138,7 @@ impl MotionLibrary {
         Ok(self)
     }
 
-    pub fn motions(&self) -> &[BodyMotion] {
+    pub fn motions(&self) -> &[MotionClip] {
         &self.motions
     }
 
@@ -156,11 +156,11 @@ impl MotionLibrary {
     }
 }
 
-fn retargeted(clips: &[Clip], roles: &Roles, model: &Model) -> Result<Vec<BodyMotion>> {
-    let motions: Vec<Result<BodyMotion>> = clips
+fn retargeted(clips: &[Clip], roles: &Roles, model: &Model) -> Result<Vec<MotionClip>> {
+    let motions: Vec<Result<MotionClip>> = clips
         .par_iter()
         .map(|clip| {
-            retarget(clip, roles, model).map_err(|error| Error::Retarget {
+            retarget(clip, roles, model).map_err(|error| MotionLibraryError::Retarget {
                 clip: clip.name.clone(),
                 error,
             })

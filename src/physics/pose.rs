@@ -6,15 +6,15 @@ use std::ops::Mul;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
     /// m
-    pub place: Vec3,
-    pub turn: Quat,
+    pub position: Vec3,
+    pub rotation: Quat,
 }
 
 impl Pose {
     /// A point of this frame, seen from outside.
     #[inline]
     pub fn at(&self, point: Vec3) -> Vec3 {
-        self.place + self.turn * point
+        self.position + self.rotation * point
     }
 }
 
@@ -23,8 +23,8 @@ impl Mul for Pose {
     #[inline]
     fn mul(self, inner: Pose) -> Pose {
         Pose {
-            place: self.at(inner.place),
-            turn: self.turn * inner.turn,
+            position: self.at(inner.position),
+            rotation: self.rotation * inner.rotation,
         }
     }
 }

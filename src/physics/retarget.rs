@@ -12,7 +12,7 @@ mod sole;
 
 use super::humanoid;
 use super::model::Model;
-use super::motion_clip::BodyMotion;
+use super::motion_clip::MotionClip;
 use crate::motion::clip::Clip;
 use crate::motion::error as motion;
 use crate::motion::resample::resample;
@@ -21,14 +21,14 @@ use crate::motion::units;
 use anatomy::Anatomy;
 use glam::{Quat, Vec3};
 use limb::{Bend, Hinge};
-use humanoid_joints::Puppet;
+use humanoid_joints::HumanoidJoints;
 use sole::Sole;
 
-pub type Result<T> = std::result::Result<T, Error>;
+pub type Result<T> = std::result::Result<T, RetargetError>;
 
 /// Why a recording cannot be put into a body.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum RetargetError {
     #[error(transparent)]
     Motion(#[from] motion::MotionError),
     #[error(
@@ -58,11 +58,11 @@ const UPRIGHT: Quat = Quat::from_xyzw(0.5, 0.5, 0.5, 0.5);
 /// A recorded frame: places (m) and turns of the skeleton's joints, z up.
 struct Frame {
     at: Vec<Vec3>,
-    turn: Vec<Quat>,
+    rotation: Vec<Quat>,
 }
 
 /// What a frame asks of the humanoid, in the world. Of pairs, the right one is first.
-struct Figure {
+struct TargetPose {
     /// Between the hip joints, m.
     hips: Vec3,
     pelvis: Quat,
@@ -78,55 +78,55 @@ struct Figure {
 ///
 /// # Errors
 /// A model without the humanoid's parts, a skeleton without elbows or knees, a clip of one frame.
-pub fn retarget(clip: &Clip, roles: &Roles, model: &Model) -> Result<BodyMotion> {
+pub fn retarget(clip: &Clip, roles: &Roles, model: &Model) -> Result<MotionClip> {
     let clip = resample(clip.clone());
     if clip.frames() < 2 {
-        return Err(Error::Short {
+        return Err(RetargetError::Short {
             clip: clip.name.clone(),
             frames: clip.frames(),
         });
     }
-    let puppet = Puppet::of(model)?;
+    let joints = HumanoidJoints::of(model)?;
     let anatomy = Anatomy::of(&clip.skeleton, roles)?;
-    let scale = puppet.leg() / units::leg(&clip.skeleton, roles);
+    let scale = joints.leg() / units::leg(&clip.skeleton, roles);
     let frames: Vec<Frame> = (0..clip.frames())
         .map(|index| frame(&clip, index))
         .collect();
-    let actor = Actor::of(anatomy, &frames);
-    let start = actor.hips(&frames[0]) * Vec3::new(1.0, 1.0, 0.0);
-    let mut q = Vec::with_capacity(frames.len() * model.positions());
+    let source = Source::of(anatomy, &frames);
+    let start = source.hips(&frames[0]) * Vec3::new(1.0, 1.0, 0.0);
+    let mut q = Vec::with_capacity(frames.len() * model.nq());
     for frame in &frames {
-        let mut figure = actor.figure(frame);
+        let mut figure = source.figure(frame);
         figure.hips = (figure.hips - start) * scale;
-        q.extend(puppet.positions(&figure));
+        q.extend(joints.positions(&figure));
     }
-    puppet.stand(&mut q);
-    Ok(BodyMotion::new(&clip.name, model, clip.rate, q))
+    joints.stand(&mut q);
+    Ok(MotionClip::new(&clip.name, model, clip.rate, q))
 }
 
 fn frame(clip: &Clip, index: usize) -> Frame {
-    let (at, turn) = clip.world(index);
+    let (at, rotation) = clip.world(index);
     Frame {
         at: at.into_iter().map(|at| UPRIGHT * at).collect(),
-        turn: turn.into_iter().map(|turn| UPRIGHT * turn).collect(),
+        rotation: rotation.into_iter().map(|rotation| UPRIGHT * rotation).collect(),
     }
 }
 
 /// A skeleton, and what its motion tells about it.
-struct Actor {
+struct Source {
     anatomy: Anatomy,
     elbows: [Hinge; 2],
     knees: [Hinge; 2],
     soles: [Sole; 2],
 }
 
-impl Actor {
-    fn of(anatomy: Anatomy, frames: &[Frame]) -> Actor {
+impl Source {
+    fn of(anatomy: Anatomy, frames: &[Frame]) -> Source {
         // An elbow bends the hanging arm forwards, a knee the leg backwards.
         let rest = |joint: usize, hinge: Vec3| {
             let axes = anatomy.axes;
             move |frame: &Frame| {
-                let trunk = frame.turn[joint] * axes;
+                let trunk = frame.rotation[joint] * axes;
                 [trunk * Vec3::NEG_Z, trunk * hinge]
             }
         };
@@ -134,7 +134,7 @@ impl Actor {
             rest(anatomy.chest, Vec3::NEG_Y),
             rest(anatomy.hips, Vec3::Y),
         );
-        Actor {
+        Source {
             elbows: anatomy.arms.map(|limb| Hinge::of(limb, frames, &arm)),
             knees: anatomy.legs.map(|limb| Hinge::of(limb, frames, &leg)),
             soles: anatomy.feet.map(|foot| Sole::of(foot, frames)),
@@ -147,16 +147,16 @@ impl Actor {
         (right + left) / 2.0
     }
 
-    fn figure(&self, frame: &Frame) -> Figure {
-        let trunk = |joint: usize| frame.turn[joint] * self.anatomy.axes;
-        Figure {
+    fn figure(&self, frame: &Frame) -> TargetPose {
+        let trunk = |joint: usize| frame.rotation[joint] * self.anatomy.axes;
+        TargetPose {
             hips: self.hips(frame),
             pelvis: trunk(self.anatomy.hips),
             torso: trunk(self.anatomy.chest),
             head: trunk(self.anatomy.head),
             arms: [0, 1].map(|side| self.elbows[side].bend(frame)),
             legs: [0, 1].map(|side| self.knees[side].bend(frame)),
-            feet: [0, 1].map(|side| self.soles[side].turn(frame)),
+            feet: [0, 1].map(|side| self.soles[side].rotation(frame)),
         }
     }
 }

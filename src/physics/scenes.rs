@@ -1,48 +1,38 @@
-//! Who is in a world.
+//! Worlds that come with the program.
 
 use super::assemble::{Part, assemble};
-use super::humanoid::{humanoid, punching_box};
+pub use super::humanoid::{humanoid, punching_box};
 use super::model::Model;
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// Between two boxers at the start, m.
-const APART: f32 = 2.0;
-/// From a puncher to its box, m.
-const REACH: f32 = 1.0;
-
-/// One humanoid.
-pub fn one() -> Model {
-    humanoid()
-}
+/// Distance of two boxers at the start, m.
+const BOXERS_APART: f32 = 2.0;
+/// Distance of a puncher to its box at the start, m.
+const BOX_APART: f32 = 1.0;
 
 /// Two humanoids, "red/" and "blue/", face to face.
-pub fn two() -> Model {
+pub fn boxing_match() -> Model {
     let model = humanoid();
-    let side = |prefix, x: f32, turn| Part {
+    let side = |prefix, x: f32, yaw| Part {
         prefix,
         model: &model,
-        place: Vec3::X * x,
-        turn,
+        position: Vec3::X * x,
+        yaw,
     };
     assemble(&[
-        side("red/", -0.5 * APART, 0.0),
-        side("blue/", 0.5 * APART, PI),
+        side("red/", -0.5 * BOXERS_APART, 0.0),
+        side("blue/", 0.5 * BOXERS_APART, PI),
     ])
 }
 
 /// A humanoid before the box it is to punch.
-pub fn punching() -> Model {
+pub fn humanoid_and_box() -> Model {
     let part = |model, x: f32| Part {
         prefix: "",
         model,
-        place: Vec3::X * x,
-        turn: 0.0,
+        position: Vec3::X * x,
+        yaw: 0.0,
     };
-    assemble(&[part(&humanoid(), 0.0), part(&punching_box(), REACH)])
-}
-
-/// The box alone.
-pub fn block() -> Model {
-    punching_box()
+    assemble(&[part(&humanoid(), 0.0), part(&punching_box(), BOX_APART)])
 }

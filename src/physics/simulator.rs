@@ -1,222 +1,234 @@
 //! One world, step by step: what [`step`](Physics::step) computes is what the shaders compute for
 //! thousands of worlds, and its parts are their twins.
 
-use super::collision::{Contacts, find};
-use super::constraints::{Contact, Lane, Limit, Rows, contacts, limits};
+use super::collision::{DetectedContacts, detect_contacts};
+use super::constraints::{
+    ConstraintRows, ContactConstraint, Lane, LimitConstraint, contact_constraints, limit_constraints,
+};
 use super::drive::{Effort, efforts, limit};
 use super::dynamics::{bias, inertias, mass_matrix};
-use super::factor::{LANES, columns, factor, unweigh, weigh};
+use super::factor::{LANES, columns, factor, solve_l, solve_lt};
 use super::integrate::integrate;
-use super::kinematics::{kinematics, origin};
+use super::kinematics::{kinematics, origin, velocities};
 use super::model::Model;
 use super::pose::Pose;
 use super::spatial::{Inertia, Spatial};
-use super::pgs::{Block, along, sweep};
+use super::pgs::{ResponseBlock, along, pgs};
 use glam::Vec3;
 use std::sync::Arc;
 
+/// Choices of the time step and the constraint solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Seconds of a step.
+pub struct SolverOptions {
+    /// Length of a step, s.
     pub dt: f32,
-    /// Rounds of projected Gauss-Seidel.
-    pub sweeps: u32,
-    /// Contacts a world has room for.
-    pub slots: usize,
+    /// Iterations of projected Gauss-Seidel.
+    pub iterations: u32,
+    /// Contacts that a world has room for.
+    pub max_contacts: usize,
 }
 
 /// Steps a second of the simulation.
 pub const STEP_RATE: f32 = 120.0;
-/// Steps for one action.
+/// Steps of one action.
 pub const SUBSTEPS: usize = 4;
-/// Contacts for each articulated character, and for a world at least.
-pub const SLOTS: usize = 16;
+/// Contacts that there is room for, for each character and at least for a world.
+pub const MAX_CONTACTS: usize = 16;
 
-impl Settings {
-    /// Enough rounds to train.
-    pub fn training(model: &Model) -> Settings {
-        Settings {
+impl SolverOptions {
+    /// Enough iterations for training.
+    pub fn fast(model: &Model) -> SolverOptions {
+        SolverOptions {
             dt: 1.0 / STEP_RATE,
-            sweeps: 20,
-            slots: SLOTS * model.trees.len().clamp(1, 2),
+            iterations: 20,
+            max_contacts: MAX_CONTACTS * model.trees.len().clamp(1, 2),
         }
     }
 
-    /// Enough rounds to be compared with a solver that converges.
-    pub fn parity(model: &Model) -> Settings {
-        Settings {
-            sweeps: 100,
-            ..Settings::training(model)
+    /// Enough iterations to be compared with a solver that converges.
+    pub fn converged(model: &Model) -> SolverOptions {
+        SolverOptions {
+            iterations: 100,
+            ..SolverOptions::fast(model)
         }
     }
 }
 
 /// What a world carries from one step to the next.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct State {
-    /// `[positions]`
+pub struct SimulatorState {
+    /// Positions, `[nq]`.
     pub q: Vec<f32>,
-    /// `[dofs]`
+    /// Velocities, `[nv]`.
     pub v: Vec<f32>,
-    /// Contacts of the last step and the forces of their edges.
-    pub keys: Vec<u32>,
-    pub forces: Vec<[f32; 4]>,
-    /// `[joints]`, forces at the ends of ranges.
-    pub limits: Vec<f32>,
+    /// Ids of the contacts of the last step.
+    pub contact_ids: Vec<u32>,
+    /// Forces of the edges of those contacts, N.
+    pub contact_forces: Vec<[f32; 4]>,
+    /// Forces of the joints' limits in the last step, `[joints]`, N or Nm.
+    pub limit_forces: Vec<f32>,
 }
 
-impl State {
-    pub fn new(model: &Model) -> State {
-        State {
-            q: model.start.clone(),
-            v: vec![0.0; model.velocities()],
-            limits: vec![0.0; model.joints.len()],
-            ..State::default()
+impl SimulatorState {
+    /// The model's initial positions, at rest.
+    pub fn new(model: &Model) -> SimulatorState {
+        SimulatorState {
+            q: model.qpos0.clone(),
+            v: vec![0.0; model.nv()],
+            limit_forces: vec![0.0; model.joints.len()],
+            ..SimulatorState::default()
         }
     }
 
-    /// Forces of a contact's edges in the step before.
-    pub fn remembered(&self, key: u32) -> [f32; 4] {
-        let place = self.keys.iter().position(|&before| before == key);
-        place.map_or([0.0; 4], |place| self.forces[place])
+    /// Forces of a contact's edges in the last step, zero if there was no such contact.
+    pub fn warm_start_forces(&self, id: u32) -> [f32; 4] {
+        let index = self.contact_ids.iter().position(|&before| before == id);
+        index.map_or([0.0; 4], |index| self.contact_forces[index])
     }
 
     /// Forgets the forces, so that the next step begins without a guess.
-    pub fn cool(&mut self) {
-        self.keys.clear();
-        self.forces.clear();
-        self.limits.fill(0.0);
+    pub fn clear_warm_start(&mut self) {
+        self.contact_ids.clear();
+        self.contact_forces.clear();
+        self.limit_forces.fill(0.0);
     }
 }
 
 /// A world's workspace: everything a step computes on the way, for whoever wants to see it.
 #[derive(Clone, Debug)]
-pub struct Physics {
+pub struct Simulator {
     pub model: Arc<Model>,
-    pub settings: Settings,
+    pub options: SolverOptions,
     columns: Vec<usize>,
-    /// `[bodies]`
+    /// Poses of the bodies in the world, `[bodies]`.
     pub poses: Vec<Pose>,
-    /// `[dofs]`, about each tree's origin.
+    /// Motions of the degrees of freedom about their trees' origins, `[nv]`.
     pub axes: Vec<Spatial>,
-    /// `[bodies]`, about each tree's origin.
+    /// Velocities of the bodies about their trees' origins, `[bodies]`.
     pub velocities: Vec<Spatial>,
     inertias: Vec<Inertia>,
-    carried: Vec<Spatial>,
-    /// `[dofs]`
+    body_forces: Vec<Spatial>,
+    /// Bias forces, `[nv]`.
     pub bias: Vec<f32>,
-    /// Packed, with armature.
-    pub matrix: Vec<f32>,
+    /// Packed mass matrix with armature, `[nm]`.
+    pub mass_matrix: Vec<f32>,
+    /// Its factor L, with what is implicit in the drives, `[nm]`.
     pub factors: Vec<f32>,
     efforts: Vec<Effort>,
-    /// Accelerations, `[dofs]`, were there no constraints, and the same mass-weighted.
-    pub smooth: Vec<f32>,
-    pub weighted: Vec<f32>,
-    pub found: Contacts,
-    pub rows: Rows,
-    pub limits: Vec<Limit>,
-    pub contacts: Vec<Contact>,
+    /// Accelerations without constraints, `[nv]`.
+    pub qacc_smooth: Vec<f32>,
+    /// The same, whitened by the factor of the mass matrix: L qacc.
+    pub qacc_whitened: Vec<f32>,
+    pub contacts: DetectedContacts,
+    pub rows: ConstraintRows,
+    pub limit_constraints: Vec<LimitConstraint>,
+    pub contact_constraints: Vec<ContactConstraint>,
     block: Vec<[f32; LANES]>,
-    blocks: Vec<Block>,
+    blocks: Vec<ResponseBlock>,
     acceleration: Vec<Lane>,
 }
 
-impl Physics {
-    pub fn new(model: Arc<Model>, settings: Settings) -> Physics {
+impl Simulator {
+    /// A workspace for worlds of a model.
+    pub fn new(model: Arc<Model>, options: SolverOptions) -> Simulator {
         let (bodies, dofs) = (model.bodies.len(), model.dofs.len());
-        let rows = Rows::new(dofs);
-        Physics {
+        let rows = ConstraintRows::new(dofs);
+        Simulator {
             columns: columns(&model),
             poses: vec![Pose::default(); bodies],
             axes: vec![Spatial::ZERO; dofs],
             velocities: vec![Spatial::ZERO; bodies],
             inertias: vec![Inertia::default(); bodies],
-            carried: vec![Spatial::ZERO; bodies],
+            body_forces: vec![Spatial::ZERO; bodies],
             bias: vec![0.0; dofs],
-            matrix: vec![0.0; model.packed()],
-            factors: vec![0.0; model.packed()],
+            mass_matrix: vec![0.0; model.nm()],
+            factors: vec![0.0; model.nm()],
             efforts: vec![Effort::default(); dofs],
-            smooth: vec![0.0; dofs],
-            weighted: vec![0.0; dofs],
-            found: Contacts::default(),
-            limits: Vec::new(),
-            contacts: Vec::new(),
+            qacc_smooth: vec![0.0; dofs],
+            qacc_whitened: vec![0.0; dofs],
+            contacts: DetectedContacts::default(),
+            limit_constraints: Vec::new(),
+            contact_constraints: Vec::new(),
             block: vec![[0.0; LANES]; dofs],
             blocks: Vec::new(),
             acceleration: vec![[0.0; 8]; rows.stride],
             rows,
-            settings,
+            options,
             model,
         }
     }
 
-    /// Moves a world on by one step. `targets` are the drives' (see
-    /// [`efforts`]); `pushes`, `[bodies]`, are
-    /// torques and forces at the centres of mass, in the world's frame.
-    pub fn step(&mut self, state: &mut State, targets: &[f32], pushes: &[Spatial]) {
-        self.forward(state, targets, pushes);
+    /// Advances a world by one step. `targets`, `[nu]`, are the drives' (see [`efforts`]);
+    /// `external_forces`, `[bodies]`, are torques and forces at the centres of mass in the world's frame.
+    pub fn step(&mut self, state: &mut SimulatorState, targets: &[f32], external_forces: &[Spatial]) {
+        self.forward(state, targets, external_forces);
         self.advance(state);
     }
 
-    /// Moves a state on with the accelerations found, and has it remember the forces.
-    pub fn advance(&self, state: &mut State) {
+    /// Integrates a state with the accelerations found, and stores the forces in it.
+    pub fn advance(&self, state: &mut SimulatorState) {
         let acceleration = self.acceleration.as_flattened();
         integrate(
             &self.model,
             acceleration,
-            self.settings.dt,
+            self.options.dt,
             &mut state.q,
             &mut state.v,
         );
-        state.keys.clone_from(&self.found.keys);
-        state.forces.clear();
-        state
-            .forces
-            .extend(self.contacts.iter().map(|contact| contact.forces));
-        state.limits.fill(0.0);
-        for limit in &self.limits {
-            state.limits[limit.joint] = limit.force;
+        state.contact_ids.clone_from(&self.contacts.ids);
+        state.contact_forces.clear();
+        let forces = self.contact_constraints.iter().map(|contact| contact.forces);
+        state.contact_forces.extend(forces);
+        state.limit_forces.fill(0.0);
+        for limit in &self.limit_constraints {
+            state.limit_forces[limit.joint] = limit.force;
         }
     }
 
-    /// Accelerations of the degrees of freedom, `[dofs]`.
-    pub fn acceleration(&self) -> &[f32] {
-        &self.acceleration.as_flattened()[..self.smooth.len()]
+    /// Accelerations of the degrees of freedom, `[nv]`.
+    pub fn qacc(&self) -> &[f32] {
+        &self.acceleration.as_flattened()[..self.qacc_smooth.len()]
     }
 
-    /// All that leads to the accelerations of a state.
-    pub fn forward(&mut self, state: &State, targets: &[f32], pushes: &[Spatial]) {
-        self.articulate(&state.q, &state.v);
-        self.accelerate(state, targets, pushes);
-        find(
+    /// Computes the accelerations of a state, and all that leads to them.
+    pub fn forward(&mut self, state: &SimulatorState, targets: &[f32], external_forces: &[Spatial]) {
+        self.inertia_and_bias(&state.q, &state.v);
+        self.smooth_acceleration(state, targets, external_forces);
+        detect_contacts(
             &self.model,
             &self.poses,
-            self.settings.slots,
-            &mut self.found,
+            self.options.max_contacts,
+            &mut self.contacts,
         );
-        self.constrain(state);
-        self.relax();
+        self.make_constraints(state);
+        self.solve();
     }
 
-    /// Accelerations under constraints.
-    pub fn relax(&mut self) {
+    /// Computes the accelerations under constraints.
+    pub fn solve(&mut self) {
         let acceleration = self.acceleration.as_flattened_mut();
         acceleration.fill(0.0);
-        acceleration[..self.weighted.len()].copy_from_slice(&self.weighted);
-        sweep(
+        acceleration[..self.qacc_whitened.len()].copy_from_slice(&self.qacc_whitened);
+        pgs(
             &self.rows,
-            self.settings.sweeps,
-            &mut self.limits,
-            &mut self.contacts,
+            self.options.iterations,
+            &mut self.limit_constraints,
+            &mut self.contact_constraints,
             &mut self.acceleration,
             &mut self.blocks,
         );
         let acceleration = self.acceleration.as_flattened_mut();
-        unweigh(&self.model, &self.columns, &self.factors, acceleration);
+        solve_l(&self.model, &self.columns, &self.factors, acceleration);
     }
 
-    /// Poses, velocities, bias forces, mass matrix.
-    pub fn articulate(&mut self, q: &[f32], v: &[f32]) {
+    /// Computes poses and velocities of the bodies in a state.
+    pub fn kinematics(&mut self, q: &[f32], v: &[f32]) {
+        kinematics(&self.model, q, &mut self.poses, &mut self.axes);
+        velocities(&self.model, v, &self.axes, &mut self.velocities);
+    }
+
+    /// Computes poses, velocities, bias forces and the mass matrix of a state.
+    pub fn inertia_and_bias(&mut self, q: &[f32], v: &[f32]) {
         let model = &self.model;
         kinematics(model, q, &mut self.poses, &mut self.axes);
         inertias(model, q, &self.poses, &mut self.inertias);
@@ -226,106 +238,106 @@ impl Physics {
             &self.axes,
             &self.inertias,
             &mut self.velocities,
-            &mut self.carried,
+            &mut self.body_forces,
             &mut self.bias,
         );
-        mass_matrix(model, &self.axes, &mut self.inertias, &mut self.matrix);
+        mass_matrix(model, &self.axes, &mut self.inertias, &mut self.mass_matrix);
         for dof in &model.dofs {
-            self.matrix[dof.row] += dof.armature;
+            self.mass_matrix[dof.row] += dof.armature;
         }
     }
 
-    /// Accelerations without constraints: drives, their limits, pushes.
-    pub fn accelerate(&mut self, state: &State, targets: &[f32], pushes: &[Spatial]) {
-        let (q, v, dt) = (&state.q, &state.v, self.settings.dt);
+    /// Computes accelerations without constraints: by drives, their limits, external forces.
+    pub fn smooth_acceleration(&mut self, state: &SimulatorState, targets: &[f32], external_forces: &[Spatial]) {
+        let (q, v, dt) = (&state.q, &state.v, self.options.dt);
         efforts(&self.model, q, v, targets, dt, &mut self.efforts);
-        self.push(q, pushes);
+        self.apply_external_forces(q, external_forces);
         self.solve_smooth();
-        if limit(&self.model, &self.smooth, &mut self.efforts) {
+        if limit(&self.model, &self.qacc_smooth, &mut self.efforts) {
             self.solve_smooth();
         }
     }
 
-    /// Takes what pushes the bodies from the bias.
-    fn push(&mut self, q: &[f32], pushes: &[Spatial]) {
-        let bodies = self.model.bodies.iter().zip(pushes).enumerate();
-        for (index, (body, push)) in bodies {
-            if *push == Spatial::ZERO {
+    /// Subtracts external forces from the bias.
+    fn apply_external_forces(&mut self, q: &[f32], external_forces: &[Spatial]) {
+        let bodies = self.model.bodies.iter().zip(external_forces).enumerate();
+        for (index, (body, applied)) in bodies {
+            if *applied == Spatial::ZERO {
                 continue;
             }
-            let arm = self.poses[index].at(body.centre) - origin(&self.model, body.tree, q);
+            let arm = self.poses[index].at(body.com) - origin(&self.model, body.tree, q);
             let force = Spatial {
-                angular: push.angular + arm.cross(push.linear),
-                linear: push.linear,
+                angular: applied.angular + arm.cross(applied.linear),
+                linear: applied.linear,
             };
-            for dof in self.model.way(body.last_dof) {
+            for dof in self.model.dof_ancestors(body.last_dof) {
                 self.bias[dof] -= self.axes[dof].dot(force);
             }
         }
     }
 
     fn solve_smooth(&mut self) {
-        self.factors.copy_from_slice(&self.matrix);
+        self.factors.copy_from_slice(&self.mass_matrix);
         for (index, (dof, effort)) in self.model.dofs.iter().zip(&self.efforts).enumerate() {
             self.factors[dof.row] += effort.armature;
-            self.weighted[index] = effort.force - self.bias[index];
+            self.qacc_whitened[index] = effort.force - self.bias[index];
         }
         let (model, columns) = (&self.model, &self.columns);
         factor(model, columns, &mut self.factors);
-        weigh(model, columns, &self.factors, &mut self.weighted);
-        self.smooth.copy_from_slice(&self.weighted);
-        unweigh(model, columns, &self.factors, &mut self.smooth);
+        solve_lt(model, columns, &self.factors, &mut self.qacc_whitened);
+        self.qacc_smooth.copy_from_slice(&self.qacc_whitened);
+        solve_l(model, columns, &self.factors, &mut self.qacc_smooth);
     }
 
-    /// How limits, contacts found and degrees of freedom move each other; `rows` end up mass-weighted.
-    pub fn constrain(&mut self, state: &State) {
-        let (model, dt) = (&self.model, self.settings.dt);
+    /// Builds the constraints of limits and contacts, with whitened rows.
+    pub fn make_constraints(&mut self, state: &SimulatorState) {
+        let (model, dt) = (&self.model, self.options.dt);
         self.rows.clear();
-        self.limits.clear();
-        self.contacts.clear();
-        limits(
+        self.limit_constraints.clear();
+        self.contact_constraints.clear();
+        limit_constraints(
             model,
             &state.q,
             &state.v,
-            &state.limits,
+            &state.limit_forces,
             dt,
             &mut self.rows,
-            &mut self.limits,
+            &mut self.limit_constraints,
         );
-        contacts(
+        contact_constraints(
             model,
             &state.q,
             &state.v,
             &self.axes,
-            &self.found,
-            |key| state.remembered(key),
+            &self.contacts,
+            |id| state.warm_start_forces(id),
             dt,
             &mut self.rows,
-            &mut self.contacts,
+            &mut self.contact_constraints,
         );
         self.rows
-            .weigh(model, &self.columns, &self.factors, &mut self.block);
+            .whiten(model, &self.columns, &self.factors, &mut self.block);
     }
 
-    /// Force with which each contact pushes its second geom, N, in the world's frame.
+    /// Force of each contact on its second geom, N, in the world's frame.
     pub fn contact_forces(&self) -> impl Iterator<Item = Vec3> {
-        self.found
-            .touches
+        self.contacts
+            .points
             .iter()
-            .zip(&self.contacts)
-            .map(|(touch, contact)| {
+            .zip(&self.contact_constraints)
+            .map(|(point, contact)| {
                 let [normal, tangent, side] = along(contact.friction, &contact.forces);
-                touch.normal * normal
-                    + touch.tangent * tangent
-                    + touch.normal.cross(touch.tangent) * side
+                point.normal * normal
+                    + point.tangent * tangent
+                    + point.normal.cross(point.tangent) * side
             })
     }
 
     /// Net contact force on every body, N.
     pub fn body_forces(&self) -> Vec<Vec3> {
         let mut net = vec![Vec3::ZERO; self.model.bodies.len()];
-        for (force, &key) in self.contact_forces().zip(&self.found.keys) {
-            let [first, second] = self.model.pairs[(key / 8) as usize];
+        for (force, &id) in self.contact_forces().zip(&self.contacts.ids) {
+            let [first, second] = self.model.pairs[(id / 8) as usize];
             if let Some(body) = self.model.geoms[second].body {
                 net[body] += force;
             }

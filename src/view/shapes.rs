@@ -2,7 +2,7 @@
 
 use super::capsule_rig::{LEFT, RIGHT, TRUNK};
 use super::scene::{Colour, Scene};
-use crate::physics::model::{Geom, Model, Shape};
+use crate::physics::model::{Geom, Model, GeomShape};
 use crate::physics::pose::Pose;
 use glam::{Quat, Vec3};
 
@@ -33,8 +33,8 @@ pub fn draw(scene: &mut Scene, model: &Model, poses: &[Pose], aside: Vec3, look:
     for geom in &model.geoms {
         let pose = geom.pose(poses);
         let pose = Pose {
-            place: seen(pose.place) + aside,
-            turn: UPRIGHT * pose.turn,
+            position: seen(pose.position) + aside,
+            rotation: UPRIGHT * pose.rotation,
         };
         shape(scene, geom.shape, &pose, colour(model, geom, look));
     }
@@ -54,15 +54,15 @@ fn colour(model: &Model, geom: &Geom, look: Look) -> Colour {
     }
 }
 
-fn shape(scene: &mut Scene, shape: Shape, pose: &Pose, colour: Colour) {
+fn shape(scene: &mut Scene, shape: GeomShape, pose: &Pose, colour: Colour) {
     match shape {
-        Shape::Plane => {}
-        Shape::Sphere { radius } => scene.ball(pose.place, radius, colour),
-        Shape::Capsule { radius, half } => {
+        GeomShape::Plane => {}
+        GeomShape::Sphere { radius } => scene.ball(pose.position, radius, colour),
+        GeomShape::Capsule { radius, half } => {
             let ends = [-half, half].map(|along| pose.at(Vec3::Z * along));
             scene.rod(&ends, radius, colour);
         }
-        Shape::Box { half } => cuboid(scene, half, pose, colour),
+        GeomShape::Box { half } => cuboid(scene, half, pose, colour),
     }
 }
 

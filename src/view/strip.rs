@@ -9,8 +9,8 @@ use super::scene::Scene;
 use super::shapes::{self, Look};
 use crate::physics::kinematics::kinematics;
 use crate::physics::model::Model;
-use crate::physics::motion_clip::{BodyMotion, targets};
-use crate::physics::simulator::{Physics, STEP_RATE, SUBSTEPS, Settings, State};
+use crate::physics::motion_clip::{MotionClip, pd_targets};
+use crate::physics::simulator::{Simulator, STEP_RATE, SUBSTEPS, SolverOptions, SimulatorState};
 use crate::physics::pose::Pose;
 use crate::physics::spatial::Spatial;
 use crate::gpu::Gpu;
@@ -41,7 +41,7 @@ const ASIDE: [f32; 2] = [0.9, 0.6];
 pub fn strips(
     gpu: &Gpu,
     model: &Arc<Model>,
-    motion: &BodyMotion,
+    motion: &MotionClip,
     folder: &Path,
 ) -> Result<[PathBuf; 2]> {
     std::fs::create_dir_all(folder)
@@ -54,6 +54,15 @@ pub fn strips(
     Ok([replayed, driven])
 }
 
+/// Writes a film strip of a motion, replayed for its whole length.
+///
+/// # Errors
+/// The file cannot be written, or the GPU was lost.
+pub fn strip(gpu: &Gpu, model: &Arc<Model>, motion: &MotionClip, file: &Path) -> Result<()> {
+    let mut strip = Strip::new(gpu, model, motion);
+    strip.write(file, strip.replayed())
+}
+
 /// What one picture shows: a scene about a point, and how much there is to either side, m.
 struct Shot {
     scene: Scene,
@@ -63,7 +72,7 @@ struct Shot {
 
 struct Strip<'a> {
     model: &'a Arc<Model>,
-    motion: &'a BodyMotion,
+    motion: &'a MotionClip,
     renderer: Renderer,
     target: RenderTarget,
     camera: Camera,
@@ -71,8 +80,8 @@ struct Strip<'a> {
 
 impl<'a> Strip<'a> {
     /// Seen from beside the front of the body at its start.
-    fn new(gpu: &Gpu, model: &'a Arc<Model>, motion: &'a BodyMotion) -> Strip<'a> {
-        let front = shapes::seen(poses(model, motion.q(0))[0].turn * Vec3::X);
+    fn new(gpu: &Gpu, model: &'a Arc<Model>, motion: &'a MotionClip) -> Strip<'a> {
+        let front = shapes::seen(poses(model, motion.q(0))[0].rotation * Vec3::X);
         Strip {
             model,
             motion,
@@ -92,7 +101,7 @@ impl<'a> Strip<'a> {
             shapes::draw(&mut scene, self.model, &recorded, Vec3::ZERO, Look::Solid);
             Shot {
                 scene,
-                focus: shapes::seen(recorded[0].place),
+                focus: shapes::seen(recorded[0].position),
                 side: 0.0,
             }
         });
@@ -106,7 +115,7 @@ impl<'a> Strip<'a> {
         let shots = times(FALL.min(self.motion.seconds())).map(|time| {
             body.until(time);
             let (simulated, recorded) = (poses(self.model, &body.state.q), self.recorded(time));
-            let [one, other] = [&simulated, &recorded].map(|poses| shapes::seen(poses[0].place));
+            let [one, other] = [&simulated, &recorded].map(|poses| shapes::seen(poses[0].position));
             let between = other + aside - one;
             let mut scene = Scene::default();
             shapes::draw(&mut scene, self.model, &recorded, aside, Look::Ghost);
@@ -148,22 +157,22 @@ impl<'a> Strip<'a> {
 
 /// The simulated body, its drives' targets the recorded angles.
 struct Driven<'a> {
-    motion: &'a BodyMotion,
-    physics: Physics,
-    state: State,
+    motion: &'a MotionClip,
+    simulator: Simulator,
+    state: SimulatorState,
     steps: usize,
 }
 
 impl<'a> Driven<'a> {
-    fn new(model: &Arc<Model>, motion: &'a BodyMotion) -> Driven<'a> {
+    fn new(model: &Arc<Model>, motion: &'a MotionClip) -> Driven<'a> {
         let (q, v) = motion.at(model, 0.0);
         Driven {
             motion,
-            physics: Physics::new(model.clone(), Settings::training(model)),
-            state: State {
+            simulator: Simulator::new(model.clone(), SolverOptions::fast(model)),
+            state: SimulatorState {
                 q,
                 v,
-                ..State::new(model)
+                ..SimulatorState::new(model)
             },
             steps: 0,
         }
@@ -171,12 +180,12 @@ impl<'a> Driven<'a> {
 
     /// An action requests the angles at its end.
     fn until(&mut self, time: f32) {
-        let model = self.physics.model.clone();
+        let model = self.simulator.model.clone();
         while (self.steps as f32) < (time * STEP_RATE).round() {
             let end = (self.steps / SUBSTEPS + 1) * SUBSTEPS;
             let (wanted, _) = self.motion.at(&model, end as f32 / STEP_RATE);
-            self.physics
-                .step(&mut self.state, &targets(&model, &wanted), &[]);
+            self.simulator
+                .step(&mut self.state, &pd_targets(&model, &wanted), &[]);
             self.steps += 1;
         }
     }
@@ -189,7 +198,7 @@ fn times(end: f32) -> impl Iterator<Item = f32> {
 
 fn poses(model: &Model, q: &[f32]) -> Vec<Pose> {
     let mut poses = vec![Pose::default(); model.bodies.len()];
-    let mut axes = vec![Spatial::ZERO; model.velocities()];
+    let mut axes = vec![Spatial::ZERO; model.nv()];
     kinematics(model, q, &mut poses, &mut axes);
     poses
 }

@@ -7,13 +7,13 @@ use crate::checked;
 use crate::inputs::{Draw, POISON, POISON_WHOLE, SIZES, gpu};
 use bytemuck::cast_slice;
 use footwork::physics::mjcf::ordered;
-use footwork::physics::model::{Body, Geom, Model, Shape};
-use footwork::physics::simulator::Settings;
+use footwork::physics::model::{Body, Geom, Model, GeomShape};
+use footwork::physics::simulator::SolverOptions;
 use footwork::physics::model_table::tables;
 use footwork::gpu::kernel::groups;
 use footwork::gpu::{Buffer, shader};
-use footwork::kernels::physics::smooth_dynamics::POSE;
-use footwork::kernels::physics::make_constraints::TOUCH;
+use footwork::kernels::physics::smooth_dynamics::POSE_DIM;
+use footwork::kernels::physics::make_constraints::CONTACT_DIM;
 use footwork::kernels::physics::collision::{self, geoms};
 use glam::{Quat, Vec3};
 
@@ -25,8 +25,8 @@ struct Case {
 
 #[derive(Debug, PartialEq)]
 struct Found {
-    touches: Vec<f32>,
-    keys: Vec<u32>,
+    contacts: Vec<f32>,
+    contact_ids: Vec<u32>,
     counts: Vec<u32>,
 }
 
@@ -35,13 +35,13 @@ const GEOMS_MOST: usize = shader::collision::constants::GEOMS_MOST as usize;
 
 impl Case {
     fn tables(&self) -> Vec<u32> {
-        tables(&self.model, &Settings::training(&self.model)).expect("it fits")
+        tables(&self.model, &SolverOptions::fast(&self.model)).expect("it fits")
     }
 
     /// Every geom on a body of its own, but for the first, which stands still.
     fn new(
-        geoms: Vec<(Shape, Vec3, Quat)>,
-        slots: usize,
+        geoms: Vec<(GeomShape, Vec3, Quat)>,
+        max_contacts: usize,
         envs: usize,
         pose: &mut impl FnMut() -> (Vec3, Quat),
     ) -> Self {
@@ -54,20 +54,20 @@ impl Case {
         };
         model.pairs = ordered(&model.geoms, pairs.collect());
         let bodies = count - 1;
-        let mut poses = vec![0.0; bodies * POSE * envs];
+        let mut poses = vec![0.0; bodies * POSE_DIM * envs];
         for env in 0..envs {
             for body in 0..bodies {
-                let (place, turn) = pose();
-                let numbers = place.to_array().into_iter().chain(turn.to_array());
+                let (position, rotation) = pose();
+                let numbers = position.to_array().into_iter().chain(turn.to_array());
                 for (field, number) in numbers.enumerate() {
-                    poses[(body * POSE + field) * envs + env] = number;
+                    poses[(body * POSE_DIM + field) * envs + env] = number;
                 }
             }
         }
         Case {
             params: collision::Params {
                 envs: envs as u32,
-                slots: slots as u32,
+                max_contacts: max_contacts as u32,
             },
             model,
             poses,
@@ -75,10 +75,10 @@ impl Case {
     }
 
     fn poisoned(&self) -> Found {
-        let (envs, slots) = (self.params.envs as usize, self.params.slots as usize);
+        let (envs, max_contacts) = (self.params.envs as usize, self.params.max_contacts as usize);
         Found {
-            touches: vec![POISON; slots * TOUCH * envs],
-            keys: vec![POISON_WHOLE; slots * envs],
+            contacts: vec![POISON; max_contacts * CONTACT_DIM * envs],
+            contact_ids: vec![POISON_WHOLE; max_contacts * envs],
             counts: vec![POISON_WHOLE; 2 * envs],
         }
     }
@@ -86,15 +86,15 @@ impl Case {
     fn twin(&self) -> Found {
         let mut found = self.poisoned();
         let Found {
-            touches,
-            keys,
+            contacts,
+            contact_ids,
             counts,
         } = &mut found;
         collision::twin(
             &self.model,
             &self.poses,
-            touches,
-            keys,
+            contacts,
+            contact_ids,
             counts,
             &self.params,
         );
@@ -106,22 +106,22 @@ impl Case {
         let geoms = Buffer::from_slice(&gpu, &geoms(&self.model));
         let pairs = Buffer::from_slice(&gpu, &self.tables());
         let poses = Buffer::from_slice(&gpu, &self.poses);
-        let touches = Buffer::from_slice(&gpu, &empty.touches);
-        let keys = Buffer::from_slice(&gpu, &empty.keys);
+        let contacts = Buffer::from_slice(&gpu, &empty.contacts);
+        let contact_ids = Buffer::from_slice(&gpu, &empty.contact_ids);
         let counts = Buffer::from_slice(&gpu, &empty.counts);
         collision::launch(
             &gpu,
             &geoms,
             &pairs,
             &poses,
-            &touches,
-            &keys,
+            &contacts,
+            &contact_ids,
             &counts,
             &self.params,
         );
         Found {
-            touches: touches.read(&gpu).expect("touches"),
-            keys: keys.read(&gpu).expect("keys"),
+            contacts: contacts.read(&gpu).expect("contacts"),
+            contact_ids: contact_ids.read(&gpu).expect("contact_ids"),
             counts: counts.read(&gpu).expect("counts"),
         }
     }
@@ -132,15 +132,15 @@ impl Case {
             cast_slice(&geoms),
             cast_slice(&pairs),
             cast_slice(&self.poses),
-            cast_slice(&empty.touches),
-            cast_slice(&empty.keys),
+            cast_slice(&empty.contacts),
+            cast_slice(&empty.contact_ids),
             cast_slice(&empty.counts),
         ];
         let groups = groups(&shader::COLLISION, self.params.envs as usize);
         let outcome = checked::run(&shader::COLLISION, groups, &buffers, &self.params);
         Found {
-            touches: outcome.of(3),
-            keys: outcome.of(4),
+            contacts: outcome.of(3),
+            contact_ids: outcome.of(4),
             counts: outcome.of(5),
         }
     }
@@ -173,20 +173,20 @@ impl Case {
                 .copied()
                 .collect::<Vec<_>>()
         };
-        column(&found.keys) == column(&twin.keys) && column(&found.counts) == column(&twin.counts)
+        column(&found.contact_ids) == column(&twin.contact_ids) && column(&found.counts) == column(&twin.counts)
     }
 
     fn judge(&self, what: &str, env: usize, found: &Found, twin: &Found) {
         let envs = self.params.envs as usize;
-        for slot in 0..self.params.slots as usize {
-            for field in 0..TOUCH {
-                let at = (slot * TOUCH + field) * envs + env;
+        for slot in 0..self.params.max_contacts as usize {
+            for field in 0..CONTACT_DIM {
+                let at = (slot * CONTACT_DIM + field) * envs + env;
                 let bar = match field {
                     0..3 => 1e-4,
                     3..9 => 1e-3,
                     _ => 1e-5,
                 };
-                let (found, wanted) = (found.touches[at], twin.touches[at]);
+                let (found, wanted) = (found.contacts[at], twin.contacts[at]);
                 let off = (found - wanted).abs();
                 assert!(
                     off <= bar,
@@ -197,7 +197,7 @@ impl Case {
     }
 }
 
-fn geom((index, (shape, place, turn)): (usize, (Shape, Vec3, Quat))) -> Geom {
+fn geom((index, (shape, place, turn)): (usize, (GeomShape, Vec3, Quat))) -> Geom {
     Geom {
         name: String::new(),
         body: index.checked_sub(1),
@@ -205,7 +205,7 @@ fn geom((index, (shape, place, turn)): (usize, (Shape, Vec3, Quat))) -> Geom {
         place,
         turn,
         friction: 1.0,
-        slippery: false,
+        frictionless: false,
         softness: Default::default(),
     }
 }
@@ -225,16 +225,16 @@ fn size(draw: &mut Draw) -> f32 {
 }
 
 /// A plane, then as many of each other shape.
-fn shapes(draw: &mut Draw, each: usize) -> Vec<(Shape, Vec3, Quat)> {
-    let mut geoms = vec![(Shape::Plane, Vec3::NEG_Z * 0.5, Quat::from_rotation_x(0.3))];
+fn shapes(draw: &mut Draw, each: usize) -> Vec<(GeomShape, Vec3, Quat)> {
+    let mut geoms = vec![(GeomShape::Plane, Vec3::NEG_Z * 0.5, Quat::from_rotation_x(0.3))];
     for index in 0..3 * each {
         let shape = match index / each {
-            0 => Shape::Sphere { radius: size(draw) },
-            1 => Shape::Capsule {
+            0 => GeomShape::Sphere { radius: size(draw) },
+            1 => GeomShape::Capsule {
                 radius: 0.5 * size(draw),
                 half: size(draw),
             },
-            _ => Shape::Box {
+            _ => GeomShape::Box {
                 half: Vec3::from_array(std::array::from_fn(|_| size(draw))),
             },
         };
@@ -243,11 +243,11 @@ fn shapes(draw: &mut Draw, each: usize) -> Vec<(Shape, Vec3, Quat)> {
     geoms
 }
 
-fn agrees_anywhere(envs: usize, slots: usize) {
-    let mut draw = Draw::new((envs + slots) as u32);
+fn agrees_anywhere(envs: usize, max_contacts: usize) {
+    let mut draw = Draw::new((envs + max_contacts) as u32);
     let geoms = shapes(&mut draw, 5);
     let mut pose = || (vector(&mut draw, 0.6), turn(&mut draw));
-    let found = Case::new(geoms, slots, envs, &mut pose).agrees(envs / 100);
+    let found = Case::new(geoms, max_contacts, envs, &mut pose).agrees(envs / 100);
     assert!(found > envs, "{found} contacts in {envs} worlds");
 }
 
@@ -260,8 +260,8 @@ fn agrees_with_the_twin_anywhere() {
 
 #[test]
 fn agrees_with_the_twin_with_few_slots_and_many() {
-    for slots in [2, 200] {
-        agrees_anywhere(65, slots);
+    for max_contacts in [2, 200] {
+        agrees_anywhere(65, max_contacts);
     }
 }
 
@@ -269,11 +269,11 @@ fn agrees_with_the_twin_with_few_slots_and_many() {
 #[test]
 fn agrees_with_the_twin_where_all_is_aligned() {
     let geoms = [
-        (Shape::Plane, Vec3::NEG_Z, Quat::IDENTITY),
-        (Shape::Sphere { radius: 0.3125 }, Vec3::ZERO, Quat::IDENTITY),
-        (Shape::Sphere { radius: 0.1875 }, Vec3::ZERO, Quat::IDENTITY),
+        (GeomShape::Plane, Vec3::NEG_Z, Quat::IDENTITY),
+        (GeomShape::Sphere { radius: 0.3125 }, Vec3::ZERO, Quat::IDENTITY),
+        (GeomShape::Sphere { radius: 0.1875 }, Vec3::ZERO, Quat::IDENTITY),
         (
-            Shape::Capsule {
+            GeomShape::Capsule {
                 radius: 0.3125,
                 half: 0.5,
             },
@@ -281,7 +281,7 @@ fn agrees_with_the_twin_where_all_is_aligned() {
             Quat::IDENTITY,
         ),
         (
-            Shape::Capsule {
+            GeomShape::Capsule {
                 radius: 0.1875,
                 half: 0.25,
             },
@@ -289,14 +289,14 @@ fn agrees_with_the_twin_where_all_is_aligned() {
             Quat::IDENTITY,
         ),
         (
-            Shape::Box {
+            GeomShape::Box {
                 half: Vec3::new(0.5, 0.3125, 0.375),
             },
             Vec3::ZERO,
             Quat::IDENTITY,
         ),
         (
-            Shape::Box {
+            GeomShape::Box {
                 half: Vec3::splat(0.375),
             },
             Vec3::ZERO,

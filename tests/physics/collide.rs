@@ -2,8 +2,8 @@
 //! against all pairs one by one.
 
 use crate::golden;
-use footwork::physics::collision::{Contacts, MOST, Placed, Touch, Touches, collide, find};
-use footwork::physics::model::{Geom, Model, Shape};
+use footwork::physics::collision::{DetectedContacts, MOST, WorldGeom, ContactPoint, ContactManifold, collide, find};
+use footwork::physics::model::{Geom, Model, GeomShape};
 use footwork::physics::pose::Pose;
 use glam::{Mat3, Quat, Vec3};
 use serde::Deserialize;
@@ -22,22 +22,22 @@ struct Case {
 }
 
 impl Case {
-    fn placed(&self) -> [Placed; 2] {
+    fn placed(&self) -> [WorldGeom; 2] {
         let kinds: Vec<&str> = self.pair.split(' ').collect();
         std::array::from_fn(|i| {
             let [w, x, y, z] = self.turns[i];
-            Placed {
+            WorldGeom {
                 shape: shape(kinds[i], &self.sizes[i]),
-                place: self.places[i],
-                turn: Mat3::from_quat(Quat::from_xyzw(x, y, z, w).normalize()),
+                position: self.places[i],
+                rotation: Mat3::from_quat(Quat::from_xyzw(x, y, z, w).normalize()),
             }
         })
     }
 
-    fn wanted(&self) -> Vec<Touch> {
+    fn wanted(&self) -> Vec<ContactPoint> {
         let contacts = self.contacts.chunks_exact(10);
-        let touch = |c: &[f32]| Touch {
-            place: Vec3::from_slice(c),
+        let touch = |c: &[f32]| ContactPoint {
+            position: Vec3::from_slice(c),
             normal: Vec3::from_slice(&c[3..]),
             tangent: Vec3::from_slice(&c[6..]),
             distance: c[9],
@@ -46,24 +46,24 @@ impl Case {
     }
 }
 
-fn shape(kind: &str, size: &[f32]) -> Shape {
+fn shape(kind: &str, size: &[f32]) -> GeomShape {
     match kind {
-        "plane" => Shape::Plane,
-        "sphere" => Shape::Sphere { radius: size[0] },
-        "capsule" => Shape::Capsule {
+        "plane" => GeomShape::Plane,
+        "sphere" => GeomShape::Sphere { radius: size[0] },
+        "capsule" => GeomShape::Capsule {
             radius: size[0],
             half: size[1],
         },
-        "box" => Shape::Box {
+        "box" => GeomShape::Box {
             half: Vec3::from_slice(size),
         },
         _ => panic!("{kind}"),
     }
 }
 
-fn radius(shape: Shape) -> f32 {
+fn radius(shape: GeomShape) -> f32 {
     match shape {
-        Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
+        GeomShape::Sphere { radius } | GeomShape::Capsule { radius, .. } => radius,
         _ => 0.0,
     }
 }
@@ -75,25 +75,25 @@ fn radius(shape: Shape) -> f32 {
 /// 1e-6 m of rounding turn it by that over their distance. The place along all but parallel axes of
 /// capsules is known to 3e-7 m over their angle. The tangent along a capsule all but upright on a
 /// plane turns by 1e-6 over its tilt.
-fn parts([first, second]: &[Placed; 2], found: &Touch, wanted: &Touch) -> [f32; 4] {
+fn parts([first, second]: &[WorldGeom; 2], found: &ContactPoint, wanted: &ContactPoint) -> [f32; 4] {
     const BAR: f32 = 1e-5;
     const TURNING: f32 = 1e-6;
     const SHIFTING: f32 = 3e-7;
-    let plane = first.shape == Shape::Plane;
+    let plane = first.shape == GeomShape::Plane;
     let gap = wanted.distance + radius(first.shape) + radius(second.shape);
     let round = !plane && radius(first.shape) > 0.0;
     let blur = if round { TURNING / gap.abs() } else { 0.0 };
-    let mut off = found.place - wanted.place;
-    let capsule = |placed: &Placed| matches!(placed.shape, Shape::Capsule { .. });
+    let mut off = found.position - wanted.position;
+    let capsule = |placed: &WorldGeom| matches!(placed.shape, GeomShape::Capsule { .. });
     if capsule(first) && capsule(second) {
-        let axis = first.turn.z_axis;
-        let angle = axis.cross(second.turn.z_axis).length();
+        let axis = first.rotation.z_axis;
+        let angle = axis.cross(second.rotation.z_axis).length();
         let along = axis.dot(off);
         let known = if angle < 0.02 { SHIFTING / angle } else { 0.0 };
         off -= axis * (along.signum() * along.abs().min(known));
     }
     let tilt = match plane && capsule(second) {
-        true => first.turn.z_axis.cross(second.turn.z_axis).length(),
+        true => first.rotation.z_axis.cross(second.rotation.z_axis).length(),
         false => 1.0,
     };
     [
@@ -105,14 +105,14 @@ fn parts([first, second]: &[Placed; 2], found: &Touch, wanted: &Touch) -> [f32; 
 }
 
 /// The largest parts, of touches paired with MuJoCo's whatever their order.
-fn compare(case: &Case, found: &[Touch]) -> [f32; 4] {
+fn compare(case: &Case, found: &[ContactPoint]) -> [f32; 4] {
     let (placed, mut rest) = (case.placed(), found.to_vec());
     let what = format!("{}, {}: {:?} {:?}", case.pair, case.way, placed, found);
     let wanted = case.wanted();
     assert_eq!(found.len(), wanted.len(), "{what} instead of {wanted:?}");
     let mut most = [0.0f32; 4];
     for wanted in &wanted {
-        let far = |touch: &Touch| touch.place.distance_squared(wanted.place);
+        let far = |touch: &ContactPoint| touch.position.distance_squared(wanted.position);
         let nearest = (0..rest.len()).min_by(|&a, &b| far(&rest[a]).total_cmp(&far(&rest[b])));
         let touch = rest.swap_remove(nearest.expect("as many"));
         let parts = parts(&placed, &touch, wanted);
@@ -125,8 +125,8 @@ fn compare(case: &Case, found: &[Touch]) -> [f32; 4] {
     most
 }
 
-fn touches(first: &Placed, second: &Placed) -> Touches {
-    let mut touches = Touches::default();
+fn touches(first: &WorldGeom, second: &WorldGeom) -> ContactManifold {
+    let mut touches = ContactManifold::default();
     collide(first, second, &mut touches);
     touches
 }
@@ -144,7 +144,7 @@ fn touches_as_in_mujoco() {
     assert_eq!(most.len(), 9);
     for (pair, [place, normal, tangent, distance]) in most {
         println!(
-            "{pair}: place {place:.2}, normal {normal:.2}, tangent {tangent:.2}, distance {distance:.2} of the bar"
+            "{pair}: place {position:.2}, normal {normal:.2}, tangent {tangent:.2}, distance {distance:.2} of the bar"
         );
     }
 }
@@ -155,15 +155,15 @@ fn crowd(count: usize) -> Model {
         name: String::new(),
         body: (index > count / 2).then(|| index - count / 2 - 1),
         shape: match index * 4 / count {
-            0 => Shape::Plane,
+            0 => GeomShape::Plane,
             1 => shape("sphere", &[0.2]),
             2 => shape("capsule", &[0.1, 0.2]),
             _ => shape("box", &[0.1, 0.2, 0.15]),
         },
-        place: wave(index, 0.3),
-        turn: Quat::from_scaled_axis(wave(index + 7, 2.0)),
+        position: wave(index, 0.3),
+        rotation: Quat::from_scaled_axis(wave(index + 7, 2.0)),
         friction: 1.0,
-        slippery: false,
+        frictionless: false,
         softness: Default::default(),
     };
     let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
@@ -186,22 +186,22 @@ fn wave(index: usize, size: f32) -> Vec3 {
 
 fn poses(count: usize) -> Vec<Pose> {
     let pose = |index| Pose {
-        place: wave(index + 100, 0.8),
-        turn: Quat::from_scaled_axis(wave(index + 200, 3.0)),
+        position: wave(index + 100, 0.8),
+        rotation: Quat::from_scaled_axis(wave(index + 200, 3.0)),
     };
     (0..count).map(pose).collect()
 }
 
-fn contacts(model: &Model, poses: &[Pose], slots: usize) -> Contacts {
-    let mut contacts = Contacts::default();
-    find(model, poses, slots, &mut contacts);
+fn contacts(model: &Model, poses: &[Pose], max_contacts: usize) -> DetectedContacts {
+    let mut contacts = DetectedContacts::default();
+    detect_contacts(model, poses, max_contacts, &mut contacts);
     contacts
 }
 
 #[test]
 fn finds_what_all_pairs_have_one_by_one() {
     let (model, poses) = (crowd(32), poses(15));
-    let placed: Vec<Placed> = model.geoms.iter().map(|geom| place(geom, &poses)).collect();
+    let placed: Vec<WorldGeom> = model.geoms.iter().map(|geom| place(geom, &poses)).collect();
     let (mut wanted, mut keys) = (Vec::new(), Vec::new());
     for (pair, &[first, second]) in model.pairs.iter().enumerate() {
         let touches = touches(&placed[first], &placed[second]);
@@ -220,12 +220,12 @@ fn finds_what_all_pairs_have_one_by_one() {
     assert!(keys.is_sorted_by(|a, b| a < b), "keys tell contacts apart");
 }
 
-fn place(geom: &Geom, poses: &[Pose]) -> Placed {
+fn place(geom: &Geom, poses: &[Pose]) -> WorldGeom {
     let pose = geom.pose(poses);
-    Placed {
+    WorldGeom {
         shape: geom.shape,
-        place: pose.place,
-        turn: Mat3::from_quat(pose.turn),
+        position: pose.position,
+        rotation: Mat3::from_quat(pose.rotation),
     }
 }
 
@@ -233,10 +233,10 @@ fn place(geom: &Geom, poses: &[Pose]) -> Placed {
 fn counts_what_finds_no_slot() {
     let (model, poses) = (crowd(32), poses(15));
     let all = contacts(&model, &poses, usize::MAX);
-    for slots in [0, 1, 7, all.touches.len() - 1, all.touches.len()] {
-        let some = contacts(&model, &poses, slots);
-        assert_eq!(some.touches, all.touches[..slots]);
-        assert_eq!(some.keys, all.keys[..slots]);
-        assert_eq!(some.overflow as usize, all.touches.len() - slots);
+    for max_contacts in [0, 1, 7, all.touches.len() - 1, all.touches.len()] {
+        let some = contacts(&model, &poses, max_contacts);
+        assert_eq!(some.touches, all.touches[..max_contacts]);
+        assert_eq!(some.keys, all.keys[..max_contacts]);
+        assert_eq!(some.overflow as usize, all.touches.len() - max_contacts);
     }
 }

@@ -2,20 +2,20 @@
 
 use crate::golden::{Golden, quantile, relative};
 use footwork::physics::humanoid::humanoid;
-use footwork::physics::simulator::{Physics, Settings, State};
+use footwork::physics::simulator::{Simulator, SolverOptions, SimulatorState};
 use std::sync::Arc;
 
 #[test]
 fn agrees_with_mujoco_in_a_thousand_states() {
     let model = Arc::new(humanoid());
-    let (nq, nv, driven) = (model.positions(), model.velocities(), model.driven());
+    let (nq, nv, driven) = (model.nq(), model.nv(), model.driven());
     let bodies = model.bodies.len();
-    let settings = Settings {
-        slots: 64,
-        ..Settings::parity(&model)
+    let settings = SolverOptions {
+        max_contacts: 64,
+        ..SolverOptions::converged(&model)
     };
-    let mut physics = Physics::new(model.clone(), settings);
-    let mut state = State::new(&model);
+    let mut physics = Simulator::new(model.clone(), settings);
+    let mut state = SimulatorState::new(&model);
     let golden = Golden::open("contacts.f32", nq + nv + driven + 2 + nv + 3 * bodies);
     let (mut accelerations, mut forces) = (Vec::new(), Vec::new());
     let mut miscounted = 0;

@@ -2,11 +2,11 @@
 //! the laws of mechanics.
 
 use crate::golden::{Golden, quantile, relative};
-use footwork::physics::collision::Contacts;
+use footwork::physics::collision::DetectedContacts;
 use footwork::physics::factor::columns;
 use footwork::physics::humanoid::humanoid;
 use footwork::physics::model::Model;
-use footwork::physics::simulator::{Physics, Settings, State};
+use footwork::physics::simulator::{Simulator, SolverOptions, SimulatorState};
 use footwork::physics::spatial::Spatial;
 use glam::Vec3;
 use std::sync::Arc;
@@ -39,10 +39,10 @@ fn times(model: &Model, matrix: &[f32], vector: &[f32]) -> Vec<f32> {
 #[test]
 fn agrees_with_mujoco_in_a_thousand_states() {
     let model = floating();
-    let (nq, nv, driven) = (model.positions(), model.velocities(), model.driven());
+    let (nq, nv, driven) = (model.nq(), model.nv(), model.driven());
     let bodies = model.bodies.len();
-    let mut physics = Physics::new(model.clone(), Settings::training(&model));
-    let mut state = State::new(&model);
+    let mut physics = Simulator::new(model.clone(), SolverOptions::fast(&model));
+    let mut state = SimulatorState::new(&model);
     let golden = Golden::open("dynamics.f32", nq + nv + driven + nv + 3 * bodies + 3 * nv);
     let mut worst = [0.0f32; 4];
     let mut accelerations = Vec::new();
@@ -54,7 +54,7 @@ fn agrees_with_mujoco_in_a_thousand_states() {
         physics.forward(&state, targets, &[]);
         let places = row.take(3 * bodies);
         for (pose, place) in physics.poses.iter().zip(places.chunks_exact(3)) {
-            worst[0] = worst[0].max((pose.place - Vec3::from_slice(place)).length());
+            worst[0] = worst[0].max((pose.position - Vec3::from_slice(place)).length());
         }
         let moved = times(&model, &physics.matrix, probe);
         worst[1] = worst[1].max(relative(&moved, row.take(nv)));
@@ -80,9 +80,9 @@ fn agrees_with_mujoco_in_a_thousand_states() {
 #[test]
 fn flies_as_in_mujoco() {
     let model = floating();
-    let (nq, nv, driven) = (model.positions(), model.velocities(), model.driven());
-    let mut physics = Physics::new(model.clone(), Settings::training(&model));
-    let mut state = State::new(&model);
+    let (nq, nv, driven) = (model.nq(), model.nv(), model.driven());
+    let mut physics = Simulator::new(model.clone(), SolverOptions::fast(&model));
+    let mut state = SimulatorState::new(&model);
     let golden = Golden::open("trajectories.f32", 2 * (nq + nv) + driven);
     let mut worst = 0.0f32;
     for mut row in golden.rows() {
@@ -102,13 +102,13 @@ fn flies_as_in_mujoco() {
 }
 
 /// Free of weight: momentum and energy of all bodies.
-fn momentum(physics: &Physics, q: &[f32]) -> (Vec3, Vec3, f32) {
+fn momentum(physics: &Simulator, q: &[f32]) -> (Vec3, Vec3, f32) {
     let (mut linear, mut angular, mut energy) = (Vec3::ZERO, Vec3::ZERO, 0.0);
     for (index, body) in physics.model.bodies.iter().enumerate() {
         let origin = Vec3::from_slice(q);
-        let centre = physics.poses[index].at(body.centre);
+        let centre = physics.poses[index].at(body.com);
         let velocity = physics.velocities[index].at(centre - origin);
-        let turn = glam::Mat3::from_quat(physics.poses[index].turn);
+        let turn = glam::Mat3::from_quat(physics.poses[index].rotation);
         let inertia = turn * body.inertia * turn.transpose();
         let spin = physics.velocities[index].angular;
         linear += velocity * body.mass;
@@ -131,12 +131,12 @@ fn drift(dt: f32) -> [Vec3; 3] {
         dof.armature = 0.0;
     }
     let model = Arc::new(model);
-    let settings = Settings {
+    let settings = SolverOptions {
         dt,
-        ..Settings::training(&model)
+        ..SolverOptions::fast(&model)
     };
-    let mut physics = Physics::new(model.clone(), settings);
-    let mut state = State::new(&model);
+    let mut physics = Simulator::new(model.clone(), settings);
+    let mut state = SimulatorState::new(&model);
     for (index, v) in state.v.iter_mut().enumerate() {
         *v = ((index * 7 + 3) % 11) as f32 * 0.1 - 0.5;
     }
@@ -158,7 +158,7 @@ fn drift(dt: f32) -> [Vec3; 3] {
     let end = momentum(&physics, &state.q);
     assert_eq!(
         physics.found.touches.len(),
-        Contacts::default().touches.len()
+        DetectedContacts::default().touches.len()
     );
     [
         (end.0 - start.0) / start.0.length(),

@@ -4,8 +4,8 @@
 use footwork::physics::humanoid::humanoid;
 use footwork::physics::kinematics::quaternion;
 use footwork::physics::mjcf;
-use footwork::physics::model::{Kind, Model};
-use footwork::physics::simulator::{Physics, SUBSTEPS, Settings, State};
+use footwork::physics::model::{JointKind, Model};
+use footwork::physics::simulator::{Simulator, SUBSTEPS, SolverOptions, SimulatorState};
 use footwork::physics::scenes;
 use footwork::physics::spatial::Spatial;
 use footwork::gpu::Device;
@@ -18,18 +18,18 @@ const HALF: Vec3 = Vec3::new(0.2, 0.2, 0.9);
 
 /// The free box alone on the ground.
 struct Block {
-    physics: Physics,
-    state: State,
+    physics: Simulator,
+    state: SimulatorState,
 }
 
 impl Block {
     fn new() -> Block {
         let model = Arc::new(scenes::block());
-        let settings = Settings::training(&model);
-        let mut state = State::new(&model);
+        let settings = SolverOptions::fast(&model);
+        let mut state = SimulatorState::new(&model);
         state.q[2] = HALF.z;
         Block {
-            physics: Physics::new(model, settings),
+            physics: Simulator::new(model, settings),
             state,
         }
     }
@@ -40,8 +40,8 @@ impl Block {
         let turn = Quat::from_rotation_y(angle);
         let edge = Vec3::new(HALF.x, 0.0, -HALF.z);
         let place = Vec3::new(HALF.x, 0.0, 0.0) - turn * edge;
-        block.state.q[..3].copy_from_slice(&place.to_array());
-        block.state.q[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z]);
+        block.state.q[..3].copy_from_slice(&position.to_array());
+        block.state.q[3..7].copy_from_slice(&[rotation.w, rotation.x, rotation.y, rotation.z]);
         block
     }
 
@@ -69,7 +69,7 @@ impl Block {
 fn a_box_rests_within_a_millimetre() {
     let mut block = Block::new();
     block.play(5.0, 0.0);
-    let off = block.place() - Vec3::new(0.0, 0.0, HALF.z);
+    let off = block.position() - Vec3::new(0.0, 0.0, HALF.z);
     println!("resting for 5 s it moved by {:.3} mm", off.length() * 1e3);
     assert!(off.length() < 1e-3, "{off}");
     assert!(block.state.v.iter().all(|v| v.abs() < 1e-3));
@@ -96,19 +96,19 @@ fn a_box_slides_at_the_friction_coefficient() {
     let weight = 8.64 * 9.81;
     let mut block = Block::new();
     block.play(1.0, 0.0);
-    let before = block.place().x;
+    let before = block.position().x;
     block.play(1.0, 0.95 * weight);
-    let crept = block.place().x - before;
+    let crept = block.position().x - before;
     println!("below the limit it creeps {:.2} mm/s", crept * 1e3);
     // Soft friction creeps, as MuJoCo's does: by a hundredth of what a box without it would slide.
     assert!(crept.abs() < 15e-3, "{crept}");
     let mut block = Block::new();
     block.play(1.0, 0.0);
-    let before = block.place().x;
+    let before = block.position().x;
     block.play(1.0, 1.2 * weight);
     // What is left of the push accelerates it: s = a t^2 / 2.
     let wanted = 0.5 * 0.2 * 9.81;
-    let slid = block.place().x - before;
+    let slid = block.position().x - before;
     println!("above it slides {slid:.3} m, by mechanics {wanted:.3} m");
     assert!(
         (slid / wanted - 1.0).abs() < 0.05,
@@ -117,37 +117,37 @@ fn a_box_slides_at_the_friction_coefficient() {
 }
 
 /// Two humanoids that stand so near that they touch, the second turned to the first.
-fn facing() -> (Arc<Model>, State) {
+fn facing() -> (Arc<Model>, SimulatorState) {
     let model = Arc::new(scenes::two());
-    let mut state = State::new(&model);
-    let half = model.positions() / 2;
+    let mut state = SimulatorState::new(&model);
+    let half = model.nq() / 2;
     state.q[0] = -0.12;
     state.q[half] = 0.12;
     (model, state)
 }
 
 /// Half a turn about the vertical.
-fn turned(model: &Model, state: &State) -> Vec<f32> {
+fn turned(model: &Model, state: &SimulatorState) -> Vec<f32> {
     let half_turn = Quat::from_rotation_z(std::f32::consts::PI);
-    let half = model.positions() / 2;
+    let half = model.nq() / 2;
     let mut q = state.q[half..].to_vec();
     let place = half_turn * Vec3::from_slice(&q);
     let turn = half_turn * quaternion(&q[3..]);
-    q[..3].copy_from_slice(&place.to_array());
-    q[3..7].copy_from_slice(&[turn.w, turn.x, turn.y, turn.z]);
+    q[..3].copy_from_slice(&position.to_array());
+    q[3..7].copy_from_slice(&[rotation.w, rotation.x, rotation.y, rotation.z]);
     q
 }
 
 #[test]
 fn mirrored_characters_move_mirrored_and_push_alike() {
     let (model, mut state) = facing();
-    let mut physics = Physics::new(model.clone(), Settings::parity(&model));
+    let mut physics = Simulator::new(model.clone(), SolverOptions::converged(&model));
     let driven = model.driven() / 2;
     let swing: Vec<f32> = (0..driven)
         .map(|k| ((k * 5 + 2) % 7) as f32 * 0.1 - 0.3)
         .collect();
     let targets = [&swing[..], &swing].concat();
-    let (half, mut met, mut worst) = (model.positions() / 2, 0, 0.0f32);
+    let (half, mut met, mut worst) = (model.nq() / 2, 0, 0.0f32);
     for _ in 0..36 {
         physics.step(&mut state, &targets, &[]);
         // By the laws of action and reaction, what the ground does not hold cancels.
@@ -189,10 +189,10 @@ fn mirrored_characters_move_mirrored_and_push_alike() {
 fn setup(envs: usize) -> Setup {
     let model = Arc::new(humanoid());
     Setup {
-        settings: Settings::training(&model),
+        settings: SolverOptions::fast(&model),
         envs,
         seed: 3,
-        watched: Vec::new(),
+        force_pairs: Vec::new(),
         model,
     }
 }
@@ -212,8 +212,8 @@ fn played(device: &Device, nonsense: f32) -> (Vec<f32>, u64) {
         simulation.set_targets(&targets);
         simulation.step();
     }
-    let broken = simulation.tallies().expect("tallies").broken;
-    (simulation.state().expect("state"), broken)
+    let diverged = simulation.counters().expect("counters").diverged;
+    (simulation.state().expect("state"), diverged)
 }
 
 #[test]
@@ -222,8 +222,8 @@ fn a_nan_action_restarts_its_world_alone() {
         let (sound, none) = played(&device, 0.1);
         assert_eq!(none, 0, "{name}");
         for nonsense in [f32::NAN, f32::INFINITY] {
-            let (state, broken) = played(&device, nonsense);
-            assert_eq!(broken, 1, "{name}, {nonsense}");
+            let (state, diverged) = played(&device, nonsense);
+            assert_eq!(diverged, 1, "{name}, {nonsense}");
             for (place, (found, wanted)) in state.iter().zip(&sound).enumerate() {
                 assert!(found.is_finite(), "{name}");
                 assert!(
@@ -273,12 +273,12 @@ fn a_push_moves_a_body_and_a_restart_takes_it_back() {
     for (name, device) in devices() {
         let setup = setup(4);
         let model = &setup.model;
-        assert_eq!(model.joints[0].kind, Kind::Free);
+        assert_eq!(model.joints[0].kind, JointKind::Free);
         let mut simulation = setup.on(&device).expect("it fits");
-        let mut pushes = vec![0.0; 6 * model.bodies.len() * 4];
+        let mut external_forces = vec![0.0; 6 * model.bodies.len() * 4];
         // The root of world 2, along y.
-        pushes[4 * 4 + 2] = 400.0;
-        simulation.set_pushes(&pushes);
+        external_forces[4 * 4 + 2] = 400.0;
+        simulation.set_pushes(&external_forces);
         simulation.step();
         let at = |state: &[f32], field: usize, env: usize| state[field * 4 + env];
         let state = simulation.state().expect("state");
@@ -310,8 +310,8 @@ fn contact_with_what_cannot_be_moved_breaks_nothing() {
         </body>
       </worldbody></mujoco>"#;
     let model = Arc::new(mjcf::parse(wheel, Path::new("wheel.xml")).expect("a model"));
-    let mut physics = Physics::new(model.clone(), Settings::training(&model));
-    let mut state = State::new(&model);
+    let mut physics = Simulator::new(model.clone(), SolverOptions::fast(&model));
+    let mut state = SimulatorState::new(&model);
     state.v[0] = 3.0;
     for _ in 0..120 {
         physics.step(&mut state, &[], &[]);

@@ -7,8 +7,8 @@ mod synthetic;
 
 use footwork::physics::humanoid::humanoid;
 use footwork::physics::kinematics::kinematics;
-use footwork::physics::model::{Kind, Model, Shape};
-use footwork::physics::motion_clip::BodyMotion;
+use footwork::physics::model::{JointKind, Model, GeomShape};
+use footwork::physics::motion_clip::MotionClip;
 use footwork::physics::pose::Pose;
 use footwork::physics::spatial::Spatial;
 use footwork::motion::clip::Clip;
@@ -37,7 +37,7 @@ struct Bodies<'a> {
 impl Bodies<'_> {
     fn of<'a>(model: &'a Model, q: &[f32]) -> Bodies<'a> {
         let mut poses = vec![Pose::default(); model.bodies.len()];
-        let mut axes = vec![Spatial::ZERO; model.velocities()];
+        let mut axes = vec![Spatial::ZERO; model.nv()];
         kinematics(model, q, &mut poses, &mut axes);
         Bodies { model, poses }
     }
@@ -47,7 +47,7 @@ impl Bodies<'_> {
     }
 
     fn place(&self, name: &str) -> Vec3 {
-        self.pose(name).place
+        self.pose(name).position
     }
 
     /// Height of the lowest corner of the feet, m.
@@ -58,14 +58,14 @@ impl Bodies<'_> {
             .iter()
             .filter(|geom| geom.name.ends_with("foot"));
         let corners = feet.flat_map(|geom| {
-            let Shape::Box { half } = geom.shape else {
+            let GeomShape::Box { half } = geom.shape else {
                 panic!("feet are boxes");
             };
             let pose = self.pose(&geom.name);
             let sign = |corner: u32, axis: u32| 1.0 - 2.0 * ((corner >> axis) & 1) as f32;
             (0..8).map(move |c| {
                 let corner = half * Vec3::new(sign(c, 0), sign(c, 1), sign(c, 2));
-                pose.at(geom.place + corner).z
+                pose.at(geom.position + corner).z
             })
         });
         corners.fold(f32::INFINITY, f32::min)
@@ -73,9 +73,9 @@ impl Bodies<'_> {
 }
 
 /// Fastest turn of any joint but the root, rad/s.
-fn fastest(model: &Model, motion: &BodyMotion) -> f32 {
+fn max_speed(model: &Model, motion: &MotionClip) -> f32 {
     let speeds = (0..motion.frames).flat_map(|frame| {
-        let joints = model.joints.iter().filter(|joint| joint.kind != Kind::Free);
+        let joints = model.joints.iter().filter(|joint| joint.kind != JointKind::Free);
         joints.map(move |joint| {
             let v = &motion.v(frame)[joint.v..][..joint.kind.dofs()];
             v.iter().map(|v| v * v).sum::<f32>().sqrt()
@@ -90,7 +90,7 @@ fn percentile(values: &mut [f32], share: f32) -> f32 {
     *values.select_nth_unstable_by(place, f32::total_cmp).1
 }
 
-fn humanoid_and(clip: &Clip, roles: &Roles) -> (Model, BodyMotion) {
+fn humanoid_and(clip: &Clip, roles: &Roles) -> (Model, MotionClip) {
     let model = humanoid();
     let motion = footwork::physics::retarget::retarget(clip, roles, &model);
     (model, motion.expect("a person's skeleton"))

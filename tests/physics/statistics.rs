@@ -4,7 +4,7 @@
 use crate::golden::Golden;
 use footwork::physics::humanoid::humanoid;
 use footwork::physics::model::Model;
-use footwork::physics::simulator::{Physics, SUBSTEPS, Settings, State};
+use footwork::physics::simulator::{Simulator, SUBSTEPS, SolverOptions, SimulatorState};
 use footwork::kernels::rng::{gaussian, random4};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -25,8 +25,8 @@ const MEASURES: [&str; 5] = [
 fn rollout(model: &Arc<Model>, seed: u32) -> [f32; MEASURES.len()] {
     let [head, left, right] =
         ["head", "left_foot", "right_foot"].map(|name| model.body(name).expect("a humanoid's"));
-    let mut physics = Physics::new(model.clone(), Settings::training(model));
-    let mut state = State::new(model);
+    let mut physics = Simulator::new(model.clone(), SolverOptions::fast(model));
+    let mut state = SimulatorState::new(model);
     let (mut fallen, mut feet, mut all) = (SECONDS as f32, Vec::new(), Vec::new());
     let control_steps = 30 * SECONDS;
     for control in 0..control_steps {
@@ -49,7 +49,7 @@ fn rollout(model: &Arc<Model>, seed: u32) -> [f32; MEASURES.len()] {
             }
             feet.push(on_feet);
             all.push(on_all);
-            if fallen == SECONDS as f32 && physics.poses[head].place.z < FALLEN {
+            if fallen == SECONDS as f32 && physics.poses[head].position.z < FALLEN {
                 fallen = (SUBSTEPS * control + sub + 1) as f32 / 120.0;
             }
         }

@@ -1,14 +1,13 @@
-//! Where the shapes of a world touch. Shader: `shaders/body/contact.wgsl`.
+//! Contacts between the shapes of a world. Shader: `shaders/physics/collision.wgsl`.
 
-use super::smooth_dynamics::{POSE, pose};
+use super::smooth_dynamics::{POSE_DIM, pose};
 use super::strided::{gather, scatter};
-use super::make_constraints::TOUCH;
-use crate::physics::collision::{Contacts, find, reach};
-use crate::physics::model::{Geom, Model, Shape};
+use super::make_constraints::CONTACT_DIM;
+use crate::physics::collision::{DetectedContacts, bounding_radius, detect_contacts};
+use crate::physics::model::{Geom, Model, GeomShape};
 use crate::physics::pose::Pose;
-use crate::gpu::kernel::groups;
 use crate::gpu::shader::collision::constants as at;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Buffer, Gpu, groups, shader};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -16,7 +15,7 @@ crate::shader_params! {
     pub struct Params for collision {
         pub envs: u32,
         /// Contacts an environment has room for.
-        pub slots: u32,
+        pub max_contacts: u32,
     }
 }
 
@@ -25,15 +24,15 @@ pub fn launch(
     geoms: &Buffer<f32>,
     tables: &Buffer<u32>,
     poses: &Buffer<f32>,
-    touches: &Buffer<f32>,
-    keys: &Buffer<u32>,
+    contacts: &Buffer<f32>,
+    contact_ids: &Buffer<u32>,
     counts: &Buffer<u32>,
     params: &Params,
 ) {
     gpu.launch(
         &shader::COLLISION,
         groups(&shader::COLLISION, params.envs as usize),
-        &[geoms, tables, poses, touches, keys, counts],
+        &[geoms, tables, poses, contacts, contact_ids, counts],
         params,
     );
 }
@@ -41,49 +40,49 @@ pub fn launch(
 pub fn twin(
     model: &Model,
     poses: &[f32],
-    touches: &mut [f32],
-    keys: &mut [u32],
+    contacts: &mut [f32],
+    contact_ids: &mut [u32],
     counts: &mut [u32],
     params: &Params,
 ) {
-    let (envs, slots) = (params.envs as usize, params.slots as usize);
-    let found: Vec<Contacts> = (0..envs)
+    let (envs, max_contacts) = (params.envs as usize, params.max_contacts as usize);
+    let found: Vec<DetectedContacts> = (0..envs)
         .into_par_iter()
         .map(|env| {
-            let mut contacts = Contacts::default();
-            find(model, &world(poses, envs, env), slots, &mut contacts);
+            let mut contacts = DetectedContacts::default();
+            detect_contacts(model, &poses_of(poses, envs, env), max_contacts, &mut contacts);
             contacts
         })
         .collect();
     for (env, found) in found.iter().enumerate() {
-        for (slot, touch) in found.touches.iter().enumerate() {
-            let numbers = [touch.place, touch.normal, touch.tangent].map(|v| v.to_array());
-            scatter(touches, envs, env, slot * TOUCH, numbers.as_flattened());
+        for (slot, point) in found.points.iter().enumerate() {
+            let numbers = [point.position, point.normal, point.tangent].map(|v| v.to_array());
+            scatter(contacts, envs, env, slot * CONTACT_DIM, numbers.as_flattened());
             scatter(
-                touches,
+                contacts,
                 envs,
                 env,
-                slot * TOUCH + TOUCH - 1,
-                &[touch.distance],
+                slot * CONTACT_DIM + CONTACT_DIM - 1,
+                &[point.distance],
             );
         }
-        scatter(keys, envs, env, 0, &found.keys);
+        scatter(contact_ids, envs, env, 0, &found.ids);
         scatter(
             counts,
             envs,
             env,
             0,
-            &[found.keys.len() as u32, found.overflow],
+            &[found.ids.len() as u32, found.overflow],
         );
     }
 }
 
-/// The poses of an environment's bodies.
-fn world(poses: &[f32], envs: usize, env: usize) -> Vec<Pose> {
-    let bodies = poses.len() / POSE / envs;
+/// The poses of an environment's bodies, out of `[bodies * 7][envs]`.
+pub fn poses_of(poses: &[f32], envs: usize, env: usize) -> Vec<Pose> {
+    let bodies = poses.len() / POSE_DIM / envs;
     let read = |body| {
-        let mut numbers = [0.0; POSE];
-        gather(poses, envs, env, body * POSE, &mut numbers);
+        let mut numbers = [0.0; POSE_DIM];
+        gather(poses, envs, env, body * POSE_DIM, &mut numbers);
         pose(&numbers)
     };
     (0..bodies).map(read).collect()
@@ -94,22 +93,22 @@ pub fn geoms(model: &Model) -> Vec<f32> {
     model.geoms.iter().flat_map(numbers).collect()
 }
 
-fn numbers(geom: &Geom) -> [f32; at::GEOM as usize] {
+fn numbers(geom: &Geom) -> [f32; at::GEOM_DIM as usize] {
     let (kind, size) = match geom.shape {
-        Shape::Plane => (at::PLANE, Vec3::ZERO),
-        Shape::Sphere { radius } => (at::SPHERE, Vec3::X * radius),
-        Shape::Capsule { radius, half } => (at::CAPSULE, Vec3::new(radius, half, 0.0)),
-        Shape::Box { half } => (at::BOX, half),
+        GeomShape::Plane => (at::PLANE, Vec3::ZERO),
+        GeomShape::Sphere { radius } => (at::SPHERE, Vec3::X * radius),
+        GeomShape::Capsule { radius, half } => (at::CAPSULE, Vec3::new(radius, half, 0.0)),
+        GeomShape::Box { half } => (at::BOX, half),
     };
-    let mut numbers = [0.0; at::GEOM as usize];
+    let mut numbers = [0.0; at::GEOM_DIM as usize];
     let mut set = |field: u32, values: &[f32]| {
         numbers[field as usize..][..values.len()].copy_from_slice(values);
     };
     set(at::GEOM_BODY, &[geom.body.map_or(-1.0, |body| body as f32)]);
     set(at::GEOM_KIND, &[kind as f32]);
     set(at::GEOM_SIZE, &size.to_array());
-    set(at::GEOM_PLACE, &geom.place.to_array());
-    set(at::GEOM_TURN, &geom.turn.to_array());
-    set(at::GEOM_REACH, &[reach(geom.shape)]);
+    set(at::GEOM_POSITION, &geom.position.to_array());
+    set(at::GEOM_ROTATION, &geom.rotation.to_array());
+    set(at::GEOM_BOUNDING_RADIUS, &[bounding_radius(geom.shape)]);
     numbers
 }

@@ -1,117 +1,114 @@
-//! Contact forces on bodies and between them. Shader: `shaders/body/blows.wgsl`.
+//! Contact forces on bodies and between them. Shader: `shaders/physics/contact_forces.wgsl`.
 
 use super::strided::{gather, scatter};
-use super::make_constraints::TOUCH;
+use super::make_constraints::CONTACT_DIM;
 use crate::physics::model::Model;
 use crate::physics::pgs::along;
-use crate::gpu::kernel::groups;
 use crate::gpu::shader::contact_forces::constants as at;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Buffer, Gpu, groups, shader};
 use glam::Vec3;
 
 crate::shader_params! {
     pub struct Params for contact_forces {
         pub envs: u32,
         /// Contacts an environment has room for.
-        pub slots: u32,
+        pub max_contacts: u32,
         /// 1 in an action's first step.
         pub first: u32,
-        /// Of a step in the mean.
-        pub share: f32,
+        /// Weight of a step in the mean.
+        pub weight: f32,
     }
 }
 
-/// Numbers of [`tallies`](twin) of an environment, and their places.
-pub const TALLIES: usize = at::TALLIES as usize;
+/// Counters of an environment, and their indices.
+pub const COUNTERS: usize = at::COUNTERS as usize;
 pub const CONTACTS: usize = at::CONTACTS as usize;
-pub const MOST_CONTACTS: usize = at::MOST_CONTACTS as usize;
+pub const PEAK_CONTACTS: usize = at::PEAK_CONTACTS as usize;
 pub const OVERFLOW: usize = at::OVERFLOW as usize;
-pub const BROKEN: usize = at::BROKEN as usize;
+pub const DIVERGED: usize = at::DIVERGED as usize;
 
-#[allow(clippy::too_many_arguments)]
 pub fn launch(
     gpu: &Gpu,
     tables: &Buffer<u32>,
-    touches: &Buffer<f32>,
-    keys: &Buffer<u32>,
+    contacts: &Buffer<f32>,
+    contact_ids: &Buffer<u32>,
     counts: &Buffer<u32>,
-    warm: &Buffer<u32>,
-    watched: &Buffer<u32>,
+    warm_start: &Buffer<u32>,
+    force_pairs: &Buffer<u32>,
     forces: &Buffer<f32>,
-    tallies: &Buffer<u32>,
+    counters: &Buffer<u32>,
     params: &Params,
 ) {
     gpu.launch(
         &shader::CONTACT_FORCES,
         groups(&shader::CONTACT_FORCES, params.envs as usize),
         &[
-            tables, touches, keys, counts, warm, watched, forces, tallies,
+            tables, contacts, contact_ids, counts, warm_start, force_pairs, forces, counters,
         ],
         params,
     );
 }
 
-#[allow(clippy::too_many_arguments)]
 pub fn twin(
     model: &Model,
-    touches: &[f32],
-    keys: &[u32],
+    contacts: &[f32],
+    contact_ids: &[u32],
     counts: &[u32],
-    warm: &[u32],
-    watched: &[u32],
+    warm_start: &[u32],
+    force_pairs: &[u32],
     forces: &mut [f32],
-    tallies: &mut [u32],
+    counters: &mut [u32],
     params: &Params,
 ) {
-    let (envs, slots) = (params.envs as usize, params.slots as usize);
-    let (&count, watched) = watched.split_first().expect("how many");
-    let entries = model.bodies.len() + count as usize;
+    let (envs, max_contacts) = (params.envs as usize, params.max_contacts as usize);
+    let (&count, force_pairs) = force_pairs.split_first().expect("how many");
+    let sums = model.bodies.len() + count as usize;
     for env in 0..envs {
         if params.first == 1 {
-            scatter(forces, envs, env, 0, &vec![0.0; 3 * entries]);
+            scatter(forces, envs, env, 0, &vec![0.0; 3 * sums]);
         }
         for slot in 0..counts[env] as usize {
-            let pair = model.pairs[(keys[slot * envs + env] / 8) as usize];
+            let pair = model.pairs[(contact_ids[slot * envs + env] / 8) as usize];
             let [first, second] = pair.map(|geom| &model.geoms[geom]);
-            let mut touch = [0.0; TOUCH];
-            gather(touches, envs, env, slot * TOUCH, &mut touch);
+            let mut point = [0.0; CONTACT_DIM];
+            gather(contacts, envs, env, slot * CONTACT_DIM, &mut point);
             let mut edges = [0; 4];
-            gather(warm, envs, env, slots + 4 * slot, &mut edges);
+            gather(warm_start, envs, env, max_contacts + 4 * slot, &mut edges);
             let edges = edges.map(f32::from_bits);
-            let (normal, tangent) = (Vec3::from_slice(&touch[3..]), Vec3::from_slice(&touch[6..]));
+            let (normal, tangent) = (Vec3::from_slice(&point[3..]), Vec3::from_slice(&point[6..]));
             let [n, t, s] = along(first.mixed(second).0, &edges);
             let force = normal * n + tangent * t + normal.cross(tangent) * s;
             let mut add = |entry: usize, force: Vec3| {
                 let mut sum = [0.0; 3];
                 gather(forces, envs, env, 3 * entry, &mut sum);
-                let sum = Vec3::from_array(sum) + force * params.share;
+                let sum = Vec3::from_array(sum) + force * params.weight;
                 scatter(forces, envs, env, 3 * entry, &sum.to_array());
             };
-            for (entry, sign) in shares(model, first.body, second.body, watched) {
+            for (entry, sign) in entries(model, first.body, second.body, force_pairs) {
                 add(entry, force * sign);
             }
         }
         let count = counts[env];
-        tallies[CONTACTS * envs + env] += count;
-        let most = &mut tallies[MOST_CONTACTS * envs + env];
+        counters[CONTACTS * envs + env] += count;
+        let most = &mut counters[PEAK_CONTACTS * envs + env];
         *most = count.max(*most);
-        tallies[OVERFLOW * envs + env] += counts[envs + env];
+        counters[OVERFLOW * envs + env] += counts[envs + env];
     }
 }
 
-/// Which sums a force of the first body on the second belongs to, and its sign there: bodies first, then
-/// watched pairs.
-pub fn shares<'a>(
+/// Which sums a force of the first body on the second belongs to, and its sign there: those of bodies
+/// come first, then those of pairs.
+pub fn entries<'a>(
     model: &Model,
     first: Option<usize>,
     second: Option<usize>,
-    watched: &'a [u32],
+    force_pairs: &'a [u32],
 ) -> impl Iterator<Item = (usize, f32)> + 'a {
     let bodies = model.bodies.len();
     let own = second.map(|body| (body, 1.0)).into_iter();
     let own = own.chain(first.map(|body| (body, -1.0)));
     let of = |body: u32, other: Option<usize>| other == Some(body as usize);
-    let pairs = watched.chunks_exact(2).enumerate();
+    let pairs = force_pairs.chunks_exact(2).enumerate();
     own.chain(pairs.filter_map(move |(index, pair)| {
         if of(pair[0], first) && of(pair[1], second) {
             Some((bodies + index, 1.0))

@@ -1,15 +1,14 @@
 //! Contacts and joint limits as mass-weighted rows of the soft constraint problem. Shader:
-//! `shaders/body/constrain.wgsl`.
+//! `shaders/physics/make_constraints.wgsl`.
 
-use super::smooth_dynamics::{Sections, read, spatial};
+use super::smooth_dynamics::{DynamicsLayout, read, spatial};
 use super::strided::{gather, scatter};
-use crate::physics::collision::Touch;
+use crate::physics::collision::ContactPoint;
 use crate::physics::model::Model;
-use crate::physics::simulator::{Physics, State};
-use crate::physics::pgs::{Block, one, three};
-use crate::gpu::kernel::groups;
+use crate::physics::simulator::{Simulator, SimulatorState};
+use crate::physics::pgs::{ResponseBlock, one, three};
 use crate::gpu::shader::make_constraints::constants as at;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Buffer, Gpu, groups, shader};
 use glam::Vec3;
 
 crate::shader_params! {
@@ -20,30 +19,29 @@ crate::shader_params! {
     }
 }
 
-/// Numbers of a touch: place, normal, tangent, distance.
-pub const TOUCH: usize = at::TOUCH as usize;
+/// Numbers of a contact: position, normal, tangent, distance.
+pub const CONTACT_DIM: usize = at::CONTACT_DIM as usize;
 /// Numbers of a constraint.
-pub const CONSTRAINT: usize = at::CONSTRAINT as usize;
+pub const CONSTRAINT_DIM: usize = at::CONSTRAINT_DIM as usize;
 
 /// Rows of workgroups: one a contact, then one for every three joints.
-pub fn row_groups(model: &Model, slots: usize) -> usize {
-    slots + model.joints.len().div_ceil(3)
+pub fn row_groups(model: &Model, max_contacts: usize) -> usize {
+    max_contacts + model.joints.len().div_ceil(3)
 }
 
 /// Rows of an environment.
-pub fn rows(model: &Model, slots: usize) -> usize {
-    3 * slots + model.joints.len()
+pub fn rows(model: &Model, max_contacts: usize) -> usize {
+    3 * max_contacts + model.joints.len()
 }
 
-#[allow(clippy::too_many_arguments)]
 pub fn launch(
     gpu: &Gpu,
     rows_of_groups: usize,
     tables: &Buffer<u32>,
     state: &Buffer<f32>,
     dynamics: &Buffer<f32>,
-    touches: &Buffer<f32>,
-    keys: &Buffer<u32>,
+    contacts: &Buffer<f32>,
+    contact_ids: &Buffer<u32>,
     counts: &Buffer<u32>,
     rows: &Buffer<f32>,
     constraints: &Buffer<f32>,
@@ -57,8 +55,8 @@ pub fn launch(
             tables,
             state,
             dynamics,
-            touches,
-            keys,
+            contacts,
+            contact_ids,
             counts,
             rows,
             constraints,
@@ -67,56 +65,55 @@ pub fn launch(
     );
 }
 
-#[allow(clippy::too_many_arguments)]
 pub fn twin(
-    physics: &mut Physics,
+    simulator: &mut Simulator,
     state: &[f32],
     dynamics: &[f32],
-    touches: &[f32],
-    keys: &[u32],
+    contacts: &[f32],
+    contact_ids: &[u32],
     counts: &[u32],
     rows: &mut [f32],
     constraints: &mut [f32],
     params: &Params,
 ) {
-    let (model, envs) = (physics.model.clone(), params.envs as usize);
-    let (slots, sections) = (physics.settings.slots, Sections::of(&model));
-    let mut world = State::new(&model);
+    let (model, envs) = (simulator.model.clone(), params.envs as usize);
+    let (max_contacts, sections) = (simulator.options.max_contacts, DynamicsLayout::new(&model));
+    let mut world = SimulatorState::new(&model);
     let mut axes = vec![0.0; sections.factors];
     for (env, &count) in counts[..envs].iter().enumerate() {
         read(&model, state, envs, env, &mut world);
         gather(dynamics, envs, env, 0, &mut axes);
-        physics.axes = axes.chunks_exact(6).map(spatial).collect();
-        gather(dynamics, envs, env, sections.factors, &mut physics.factors);
-        find(physics, touches, keys, envs, env, count as usize);
-        physics.constrain(&world);
+        simulator.axes = axes.chunks_exact(6).map(spatial).collect();
+        gather(dynamics, envs, env, sections.factors, &mut simulator.factors);
+        detect_contacts(simulator, contacts, contact_ids, envs, env, count as usize);
+        simulator.make_constraints(&world);
         for joint in 0..model.joints.len() {
-            let place = (slots + joint) * CONSTRAINT;
+            let place = (max_contacts + joint) * CONSTRAINT_DIM;
             scatter(constraints, envs, env, place + at::ACTIVE as usize, &[0.0]);
         }
-        for limit in &physics.limits {
-            let place = (slots + limit.joint) * CONSTRAINT;
+        for limit in &simulator.limit_constraints {
+            let place = (max_contacts + limit.joint) * CONSTRAINT_DIM;
             let mut set = |field: u32, value| {
                 scatter(constraints, envs, env, place + field as usize, &[value]);
             };
             set(at::TARGET, limit.target);
-            set(at::SOFTNESS, limit.softness);
+            set(at::REGULARIZATION, limit.regularization);
             set(at::ACTIVE, 1.0);
-            set(at::BLOCK, one(&physics.rows, limit.row)[0][0]);
-            write_row(physics, limit.row, rows, envs, env, 3 * slots + limit.joint);
+            set(at::BLOCK, one(&simulator.rows, limit.row)[0][0]);
+            write_row(simulator, limit.row, rows, envs, env, 3 * max_contacts + limit.joint);
         }
-        for (slot, contact) in physics.contacts.iter().enumerate() {
-            let place = slot * CONSTRAINT;
+        for (slot, contact) in simulator.contact_constraints.iter().enumerate() {
+            let place = slot * CONSTRAINT_DIM;
             scatter(constraints, envs, env, place, &contact.target);
-            let values = [contact.softness, contact.friction];
+            let values = [contact.regularization, contact.friction];
             scatter(
                 constraints,
                 envs,
                 env,
-                place + at::SOFTNESS as usize,
+                place + at::REGULARIZATION as usize,
                 &values,
             );
-            let block = three(&physics.rows, contact.row);
+            let block = three(&simulator.rows, contact.row);
             scatter(
                 constraints,
                 envs,
@@ -125,48 +122,48 @@ pub fn twin(
                 &flat(&block),
             );
             for k in 0..3 {
-                write_row(physics, contact.row + k, rows, envs, env, 3 * slot + k);
+                write_row(simulator, contact.row + k, rows, envs, env, 3 * slot + k);
             }
         }
     }
 }
 
 /// The touches of an environment become those a world has found.
-fn find(
-    physics: &mut Physics,
-    touches: &[f32],
-    keys: &[u32],
+fn detect_contacts(
+    simulator: &mut Simulator,
+    contacts: &[f32],
+    contact_ids: &[u32],
     envs: usize,
     env: usize,
     count: usize,
 ) {
-    physics.found.touches.clear();
-    physics.found.keys.clear();
+    simulator.contacts.points.clear();
+    simulator.contacts.ids.clear();
     for slot in 0..count {
-        let mut numbers = [0.0; TOUCH];
-        gather(touches, envs, env, slot * TOUCH, &mut numbers);
-        physics.found.touches.push(Touch {
-            place: Vec3::from_slice(&numbers),
+        let mut numbers = [0.0; CONTACT_DIM];
+        gather(contacts, envs, env, slot * CONTACT_DIM, &mut numbers);
+        simulator.contacts.points.push(ContactPoint {
+            position: Vec3::from_slice(&numbers),
             normal: Vec3::from_slice(&numbers[3..]),
             tangent: Vec3::from_slice(&numbers[6..]),
             distance: numbers[9],
         });
-        physics.found.keys.push(keys[slot * envs + env]);
+        simulator.contacts.ids.push(contact_ids[slot * envs + env]);
     }
 }
 
 /// nn nt ns tt ts ss
-fn flat(block: &Block) -> [f32; 6] {
+fn flat(block: &ResponseBlock) -> [f32; 6] {
     let b = block;
     [b[0][0], b[0][1], b[0][2], b[1][1], b[1][2], b[2][2]]
 }
 
 /// A row, to `[rows][quads][envs][4]`.
-fn write_row(physics: &Physics, row: usize, rows: &mut [f32], envs: usize, env: usize, to: usize) {
-    let quads = physics.model.dofs.len().div_ceil(4);
-    let values = &physics.rows.row(row)[..4 * quads];
+fn write_row(simulator: &Simulator, row: usize, rows: &mut [f32], envs: usize, env: usize, to: usize) {
+    let quads = simulator.model.dofs.len().div_ceil(4);
+    let values = &simulator.rows.row(row)[..4 * quads];
     for (quad, numbers) in values.chunks_exact(4).enumerate() {
-        let place = ((to * quads + quad) * envs + env) * 4;
-        rows[place..place + 4].copy_from_slice(numbers);
+        let at = ((to * quads + quad) * envs + env) * 4;
+        rows[at..at + 4].copy_from_slice(numbers);
     }
 }

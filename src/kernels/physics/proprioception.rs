@@ -1,36 +1,48 @@
-//! What a character feels of itself. Shader: `shaders/body/proprioception.wgsl`.
+//! A character's observation of its own body. Shader: `shaders/physics/proprioception.wgsl`.
 
-use super::smooth_dynamics::{POSE, Sections, pose, spatial};
+use super::collision::poses_of;
+use super::smooth_dynamics::{DynamicsLayout, spatial};
 use super::strided::gather;
+use crate::gpu::shader::proprioception::constants as at;
+use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::physics::kinematics::quaternion;
-use crate::physics::model::{Kind, Model};
-use crate::gpu::kernel::groups;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::physics::model::{JointKind, Model};
+use crate::physics::pose::Pose;
+use crate::physics::spatial::Spatial;
 use glam::{Quat, Vec2, Vec3};
 
 crate::shader_params! {
     pub struct Params for proprioception {
         pub envs: u32,
         pub characters: u32,
-        /// Numbers of a character, of all the same.
+        /// Numbers of an observation.
         pub width: u32,
+        /// Index of the first observation.
+        pub at: u32,
+        /// The environments to observe: those whose step ended so, or [`ANY`].
+        pub only: u32,
     }
 }
 
-/// Numbers that a character of a tree feels, knowing the places of `keys` bodies.
+/// All environments, however their step ended.
+pub const ANY: u32 = at::ANY;
+
+/// Numbers of the observation of a tree's character with `keys` key bodies.
 pub fn width(model: &Model, tree: usize, keys: usize) -> usize {
     let joints = model.joints.iter();
     let own = joints.filter(|joint| model.bodies[joint.body].tree == tree);
     let numbers = own.map(|joint| match joint.kind {
-        Kind::Free => 0,
-        Kind::Ball => 6 + 3,
-        Kind::Hinge => 1 + 1,
+        JointKind::Free => 0,
+        JointKind::Ball => 6 + 3,
+        JointKind::Hinge => 1 + 1,
     });
-    // Height, turn, velocity and angular velocity of the root, free or not.
+    // Height, rotation, velocity and angular velocity of the root, free or not.
     1 + 6 + 3 + 3 + numbers.sum::<usize>() + 3 * keys
 }
 
-#[allow(clippy::too_many_arguments)]
+/// `poses` and the velocities in `dynamics` must be of `state`. `characters` holds the number of key
+/// bodies, then of each character its tree and its key bodies; `termination` `[envs]`; `observation`
+/// takes `[envs][characters][width]` from `params.at` on.
 pub fn launch(
     gpu: &Gpu,
     tables: &Buffer<u32>,
@@ -38,96 +50,122 @@ pub fn launch(
     poses: &Buffer<f32>,
     dynamics: &Buffer<f32>,
     characters: &Buffer<u32>,
-    felt: &Buffer<f32>,
+    termination: &Buffer<u32>,
+    observation: &Buffer<f32>,
     params: &Params,
 ) {
-    let numbers = (params.characters * params.envs * params.width) as usize;
-    assert_eq!(felt.len(), numbers, "what all characters feel");
+    let rows = params.characters * params.envs;
+    let end = (params.at + rows * params.width) as usize;
+    assert!(observation.len() >= end, "observations of all characters");
     gpu.launch(
         &shader::PROPRIOCEPTION,
-        groups(
-            &shader::PROPRIOCEPTION,
-            (params.characters * params.envs) as usize,
-        ),
-        &[tables, state, poses, dynamics, characters, felt],
+        groups(&shader::PROPRIOCEPTION, rows as usize),
+        &[
+            tables,
+            state,
+            poses,
+            dynamics,
+            characters,
+            termination,
+            observation,
+        ],
         params,
     );
 }
 
+/// The kernel on the CPU.
 pub fn twin(
     model: &Model,
     state: &[f32],
     poses: &[f32],
     dynamics: &[f32],
     characters: &[u32],
-    felt: &mut [f32],
+    termination: &[u32],
+    observation: &mut [f32],
     params: &Params,
 ) {
     let envs = params.envs as usize;
-    let velocities = Sections::of(model).velocities;
-    let (mut q, mut v) = (vec![0.0; model.positions()], vec![0.0; model.dofs.len()]);
+    let (mut q, mut v) = (vec![0.0; model.nq()], vec![0.0; model.dofs.len()]);
+    let mut velocities = vec![0.0; 6 * model.bodies.len()];
     let (&keys, lists) = characters.split_first().expect("how many keys");
-    let lists = lists.chunks_exact(1 + keys as usize);
-    for (character, list) in lists.enumerate() {
-        let tree = &model.trees[list[0] as usize];
-        let root = tree.bodies.start;
-        for env in 0..envs {
-            gather(state, envs, env, 0, &mut q);
-            gather(state, envs, env, model.positions(), &mut v);
-            let mut numbers = [0.0; 6];
-            gather(dynamics, envs, env, velocities + 6 * root, &mut numbers);
-            let motion = spatial(&numbers);
-            let place = |body: usize| {
-                let mut numbers = [0.0; POSE];
-                gather(poses, envs, env, POSE * body, &mut numbers);
-                pose(&numbers)
-            };
-            let root = place(root);
-            let forward = (root.turn * Vec3::X).truncate();
-            let heading = match forward.length() > 1e-6 {
-                true => forward / forward.length(),
-                false => Vec2::X,
-            };
-            let mut feels = vec![root.place.z];
-            feels.extend(turn(root.turn, heading));
-            feels.extend(ahead(heading, motion.linear).to_array());
-            feels.extend(ahead(heading, motion.angular).to_array());
-            for joint in &model.joints {
-                if !tree.dofs.contains(&joint.v) {
-                    continue;
-                }
-                match joint.kind {
-                    Kind::Free => {}
-                    Kind::Ball => {
-                        feels.extend(turn(quaternion(&q[joint.q..]).normalize(), Vec2::X))
-                    }
-                    Kind::Hinge => feels.push(q[joint.q]),
-                }
-            }
-            let free = model.joints[model.bodies[tree.bodies.start].joints.clone()].first();
-            let skip = free.map_or(0, |joint| if joint.kind == Kind::Free { 6 } else { 0 });
-            feels.extend(&v[tree.dofs.start + skip..tree.dofs.end]);
-            let below = Vec3::new(root.place.x, root.place.y, 0.0);
-            for &body in &list[1..] {
-                feels.extend(ahead(heading, place(body as usize).place - below).to_array());
-            }
-            let width = params.width as usize;
-            felt[(character * envs + env) * width..][..width].copy_from_slice(&feels);
+    let rows = observation[params.at as usize..].chunks_exact_mut(params.width as usize);
+    for (row, out) in rows.take(envs * params.characters as usize).enumerate() {
+        let (env, character) = (
+            row / params.characters as usize,
+            row % params.characters as usize,
+        );
+        if params.only != ANY && termination[env] != params.only {
+            continue;
         }
+        gather(state, envs, env, 0, &mut q);
+        gather(state, envs, env, model.nq(), &mut v);
+        let from = DynamicsLayout::new(model).velocities;
+        gather(dynamics, envs, env, from, &mut velocities);
+        let velocities: Vec<Spatial> = velocities.chunks_exact(6).map(spatial).collect();
+        let character = &lists[character * (1 + keys as usize)..][..1 + keys as usize];
+        let poses = poses_of(poses, envs, env);
+        observe(model, &q, &v, &poses, &velocities, character, out);
+    }
+}
+
+/// Writes the observation `[width]` of a character, its tree and then its key bodies, in a world with
+/// positions `q`, velocities `v`, and the `poses` and `velocities` of bodies that follow from them.
+pub fn observe(
+    model: &Model,
+    q: &[f32],
+    v: &[f32],
+    poses: &[Pose],
+    velocities: &[Spatial],
+    character: &[u32],
+    out: &mut [f32],
+) {
+    let tree = &model.trees[character[0] as usize];
+    let (root, velocity) = (&poses[tree.bodies.start], velocities[tree.bodies.start]);
+    let forward = (root.rotation * Vec3::X).truncate();
+    let heading = match forward.length() > 1e-6 {
+        true => forward / forward.length(),
+        false => Vec2::X,
+    };
+    let mut rest = out;
+    let mut put = |values: &[f32]| {
+        let (now, then) = std::mem::take(&mut rest).split_at_mut(values.len());
+        now.copy_from_slice(values);
+        rest = then;
+    };
+    put(&[root.position.z]);
+    put(&rotation(root.rotation, heading));
+    put(&in_heading_frame(heading, velocity.linear));
+    put(&in_heading_frame(heading, velocity.angular));
+    for joint in &model.joints {
+        if !tree.dofs.contains(&joint.v) {
+            continue;
+        }
+        match joint.kind {
+            JointKind::Free => {}
+            JointKind::Ball => put(&rotation(quaternion(&q[joint.q..]).normalize(), Vec2::X)),
+            JointKind::Hinge => put(&[q[joint.q]]),
+        }
+    }
+    let first = model.joints[model.bodies[tree.bodies.start].joints.clone()].first();
+    let free = first.is_some_and(|joint| joint.kind == JointKind::Free);
+    put(&v[tree.dofs.start + if free { 6 } else { 0 }..tree.dofs.end]);
+    let below = Vec3::new(root.position.x, root.position.y, 0.0);
+    for &body in &character[1..] {
+        put(&in_heading_frame(heading, poses[body as usize].position - below));
     }
 }
 
 /// A vector of the world in the heading frame.
-fn ahead(heading: Vec2, vector: Vec3) -> Vec3 {
-    Vec3::new(
+fn in_heading_frame(heading: Vec2, vector: Vec3) -> [f32; 3] {
+    [
         heading.x * vector.x + heading.y * vector.y,
         heading.x * vector.y - heading.y * vector.x,
         vector.z,
-    )
+    ]
 }
 
-/// Where a turn takes the axes x and z.
-fn turn(turn: Quat, heading: Vec2) -> impl Iterator<Item = f32> {
-    let axes = [Vec3::X, Vec3::Z].map(|axis| ahead(heading, turn * axis).to_array());
-    axes.into_iter().flatten()
+/// Where a rotation takes the axes x and z.
+fn rotation(rotation: Quat, heading: Vec2) -> [f32; 6] {
+    let [x, z] = [Vec3::X, Vec3::Z].map(|axis| in_heading_frame(heading, rotation * axis));
+    [x[0], x[1], x[2], z[0], z[1], z[2]]
 }

@@ -1,18 +1,16 @@
-//! Draws targets for the drives at random. Shader: `shaders/body/explore.wgsl`.
+//! Draws targets for the drives at random. Shader: `shaders/physics/random_targets.wgsl`.
 
 use crate::kernels::rng::{gaussian, random4};
-use crate::gpu::kernel::groups;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Buffer, Gpu, groups, shader};
 
 crate::shader_params! {
     pub struct Params for random_targets {
         pub envs: u32,
-        /// Driven degrees of freedom of an environment.
-        /// rad
-        pub deviation: f32,
+        /// Standard deviation of the targets, rad.
+        pub action_std: f32,
         pub seed: u32,
         /// Actions of the run so far: the random numbers' counter.
-        pub clock: u32,
+        pub step_counter: u32,
         pub stream: u32,
     }
 }
@@ -25,14 +23,14 @@ pub fn launch(gpu: &Gpu, driven: usize, targets: &Buffer<f32>, params: &Params) 
 
 pub fn twin(targets: &mut [f32], params: &Params) {
     let envs = params.envs as usize;
-    for (place, target) in targets.iter_mut().enumerate() {
-        *target = drawn(params, place / envs, place % envs);
+    for (index, wanted) in targets.iter_mut().enumerate() {
+        *wanted = target(params, index / envs, index % envs);
     }
 }
 
 /// One target of an environment, rad.
-pub fn drawn(params: &Params, index: usize, env: usize) -> f32 {
+pub fn target(params: &Params, index: usize, env: usize) -> f32 {
     let stream = params.stream + index as u32;
-    let bits = random4(params.seed, env as u32, params.clock, stream);
-    params.deviation * gaussian(bits)
+    let bits = random4(params.seed, env as u32, params.step_counter, stream);
+    params.action_std * gaussian(bits)
 }

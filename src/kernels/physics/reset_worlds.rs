@@ -1,81 +1,79 @@
-//! Starts worlds anew, asked to or broken. Shader: `shaders/body/restart.wgsl`.
+//! Starts worlds anew, asked to or broken. Shader: `shaders/physics/reset_worlds.wgsl`.
 
-use super::contact_forces::BROKEN;
+use super::contact_forces::DIVERGED;
 use super::strided::{gather, scatter};
-use super::solve_and_integrate::NO_KEY;
+use super::solve_and_integrate::NO_CONTACT;
 use crate::physics::model::Model;
-use crate::gpu::kernel::groups;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Buffer, Gpu, groups, shader};
 
 crate::shader_params! {
     pub struct Params for reset_worlds {
         pub envs: u32,
-        /// m/s and rad/s; what is faster is broken.
-        pub fastest: f32,
+        /// m/s and rad/s; what is faster has diverged.
+        pub max_speed: f32,
     }
 }
 
-#[allow(clippy::too_many_arguments)]
 pub fn launch(
     gpu: &Gpu,
     tables: &Buffer<u32>,
     mask: &Buffer<u32>,
     starts: &Buffer<f32>,
     state: &Buffer<f32>,
-    warm: &Buffer<u32>,
-    watched: &Buffer<u32>,
+    warm_start: &Buffer<u32>,
+    force_pairs: &Buffer<u32>,
     forces: &Buffer<f32>,
-    tallies: &Buffer<u32>,
+    counters: &Buffer<u32>,
     params: &Params,
 ) {
     gpu.launch(
         &shader::RESET_WORLDS,
         groups(&shader::RESET_WORLDS, params.envs as usize),
-        &[tables, mask, starts, state, warm, watched, forces, tallies],
+        &[tables, mask, starts, state, warm_start, force_pairs, forces, counters],
         params,
     );
 }
 
-#[allow(clippy::too_many_arguments)]
 pub fn twin(
     model: &Model,
-    slots: usize,
+    max_contacts: usize,
     mask: &[u32],
     starts: &[f32],
     state: &mut [f32],
-    warm: &mut [u32],
-    watched: &[u32],
+    warm_start: &mut [u32],
+    force_pairs: &[u32],
     forces: &mut [f32],
-    tallies: &mut [u32],
+    counters: &mut [u32],
     params: &Params,
 ) {
     let envs = params.envs as usize;
-    let mut values = vec![0.0; model.positions() + model.dofs.len()];
+    let mut values = vec![0.0; model.nq() + model.dofs.len()];
     for env in 0..envs {
         gather(state, envs, env, 0, &mut values);
-        let broken = broken(model, &values, params.fastest);
-        tallies[BROKEN * envs + env] += u32::from(broken);
-        if !broken && mask[env] == 0 {
+        let (q, v) = values.split_at(model.nq());
+        let diverged = has_diverged(q, v, params.max_speed);
+        counters[DIVERGED * envs + env] += u32::from(diverged);
+        if !diverged && mask[env] == 0 {
             continue;
         }
         gather(starts, envs, env, 0, &mut values);
         scatter(state, envs, env, 0, &values);
-        scatter(warm, envs, env, 0, &vec![NO_KEY; slots]);
+        scatter(warm_start, envs, env, 0, &vec![NO_CONTACT; max_contacts]);
         scatter(
-            warm,
+            warm_start,
             envs,
             env,
-            slots,
-            &vec![0; 4 * slots + model.joints.len()],
+            max_contacts,
+            &vec![0; 4 * max_contacts + model.joints.len()],
         );
-        let entries = model.bodies.len() + watched[0] as usize;
+        let entries = model.bodies.len() + force_pairs[0] as usize;
         scatter(forces, envs, env, 0, &vec![0.0; 3 * entries]);
     }
 }
 
-/// Whether a state, positions then velocities, has lost all sense.
-pub fn broken(model: &Model, values: &[f32], fastest: f32) -> bool {
-    let velocities = &values[model.positions()..];
-    values.iter().any(|value| !value.is_finite())
-        || velocities.iter().any(|speed| speed.abs() > fastest)
+/// Whether a state is no longer one: a number is not finite, or a speed, m/s or rad/s, over `max_speed`.
+pub fn has_diverged(q: &[f32], v: &[f32], max_speed: f32) -> bool {
+    q.iter().any(|position| !position.is_finite())
+        || v.iter()
+            .any(|speed| !speed.is_finite() || speed.abs() > max_speed)
 }

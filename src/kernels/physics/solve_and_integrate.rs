@@ -1,14 +1,13 @@
 //! Projected Gauss-Seidel over limits and contacts, then a step forward. Shader:
-//! `shaders/body/solve.wgsl`.
+//! `shaders/physics/solve_and_integrate.wgsl`.
 
-use super::smooth_dynamics::{Sections, read, write};
+use super::smooth_dynamics::{DynamicsLayout, read, write};
 use super::strided::{gather, scatter};
-use super::make_constraints::CONSTRAINT;
-use crate::physics::constraints::{Contact, Limit};
-use crate::physics::simulator::{Physics, State};
-use crate::gpu::kernel::groups;
+use super::make_constraints::CONSTRAINT_DIM;
+use crate::physics::constraints::{ContactConstraint, LimitConstraint};
+use crate::physics::simulator::{Simulator, SimulatorState};
 use crate::gpu::shader::make_constraints::constants as at;
-use crate::gpu::{Buffer, Gpu, shader};
+use crate::gpu::{Buffer, Gpu, groups, shader};
 
 crate::shader_params! {
     pub struct Params for solve_and_integrate {
@@ -18,15 +17,14 @@ crate::shader_params! {
     }
 }
 
-/// Of no contact.
-pub const NO_KEY: u32 = u32::MAX;
+/// Id of no contact.
+pub const NO_CONTACT: u32 = u32::MAX;
 
-/// Numbers that an environment remembers of a step's forces.
-pub fn warm(slots: usize, joints: usize) -> usize {
-    5 * slots + joints
+/// Numbers of `warm_start` of an environment: ids of contacts, the forces of their edges, those of limits.
+pub fn warm_start_dim(max_contacts: usize, joints: usize) -> usize {
+    5 * max_contacts + joints
 }
 
-#[allow(clippy::too_many_arguments)]
 pub fn launch(
     gpu: &Gpu,
     tables: &Buffer<u32>,
@@ -34,9 +32,9 @@ pub fn launch(
     dynamics: &Buffer<f32>,
     rows: &Buffer<f32>,
     constraints: &Buffer<f32>,
-    keys: &Buffer<u32>,
+    contact_ids: &Buffer<u32>,
     counts: &Buffer<u32>,
-    warm: &Buffer<u32>,
+    warm_start: &Buffer<u32>,
     params: &Params,
 ) {
     gpu.launch(
@@ -48,126 +46,125 @@ pub fn launch(
             dynamics,
             rows,
             constraints,
-            keys,
+            contact_ids,
             counts,
-            warm,
+            warm_start,
         ],
         params,
     );
 }
 
-#[allow(clippy::too_many_arguments)]
 pub fn twin(
-    physics: &mut Physics,
+    simulator: &mut Simulator,
     state: &mut [f32],
     dynamics: &[f32],
     rows: &[f32],
     constraints: &[f32],
-    keys: &[u32],
+    contact_ids: &[u32],
     counts: &[u32],
-    warm: &mut [u32],
+    warm_start: &mut [u32],
     params: &Params,
 ) {
-    let (model, envs) = (physics.model.clone(), params.envs as usize);
-    let (slots, joints) = (physics.settings.slots, model.joints.len());
-    let sections = Sections::of(&model);
-    let mut world = State::new(&model);
-    let mut numbers = [0.0; CONSTRAINT];
+    let (model, envs) = (simulator.model.clone(), params.envs as usize);
+    let (max_contacts, joints) = (simulator.options.max_contacts, model.joints.len());
+    let sections = DynamicsLayout::new(&model);
+    let mut world = SimulatorState::new(&model);
+    let mut numbers = [0.0; CONSTRAINT_DIM];
     for env in 0..envs {
         read(&model, state, envs, env, &mut world);
-        gather(dynamics, envs, env, sections.factors, &mut physics.factors);
+        gather(dynamics, envs, env, sections.factors, &mut simulator.factors);
         gather(
             dynamics,
             envs,
             env,
-            sections.weighted,
-            &mut physics.weighted,
+            sections.qacc_whitened,
+            &mut simulator.qacc_whitened,
         );
-        remember(warm, envs, env, slots, &mut world);
-        physics.rows.clear();
-        physics.limits.clear();
-        physics.contacts.clear();
-        physics.found.keys.clear();
+        read_warm_start(warm_start, envs, env, max_contacts, &mut world);
+        simulator.rows.clear();
+        simulator.limit_constraints.clear();
+        simulator.contact_constraints.clear();
+        simulator.contacts.ids.clear();
         for joint in 0..joints {
             gather(
                 constraints,
                 envs,
                 env,
-                (slots + joint) * CONSTRAINT,
+                (max_contacts + joint) * CONSTRAINT_DIM,
                 &mut numbers,
             );
             if numbers[at::ACTIVE as usize] == 0.0 {
                 continue;
             }
-            let row = take_row(physics, rows, envs, env, 3 * slots + joint);
-            physics.limits.push(Limit {
+            let row = take_row(simulator, rows, envs, env, 3 * max_contacts + joint);
+            simulator.limit_constraints.push(LimitConstraint {
                 joint,
                 row,
                 target: numbers[at::TARGET as usize],
-                softness: numbers[at::SOFTNESS as usize],
-                force: world.limits[joint],
+                regularization: numbers[at::REGULARIZATION as usize],
+                force: world.limit_forces[joint],
             });
         }
         for slot in 0..counts[env] as usize {
-            gather(constraints, envs, env, slot * CONSTRAINT, &mut numbers);
-            let key = keys[slot * envs + env];
-            let row = take_row(physics, rows, envs, env, 3 * slot);
-            take_row(physics, rows, envs, env, 3 * slot + 1);
-            take_row(physics, rows, envs, env, 3 * slot + 2);
-            physics.found.keys.push(key);
-            physics.contacts.push(Contact {
+            gather(constraints, envs, env, slot * CONSTRAINT_DIM, &mut numbers);
+            let id = contact_ids[slot * envs + env];
+            let row = take_row(simulator, rows, envs, env, 3 * slot);
+            take_row(simulator, rows, envs, env, 3 * slot + 1);
+            take_row(simulator, rows, envs, env, 3 * slot + 2);
+            simulator.contacts.ids.push(id);
+            simulator.contact_constraints.push(ContactConstraint {
                 row,
                 friction: numbers[at::FRICTION as usize],
                 target: [numbers[0], numbers[1], numbers[2]],
-                softness: numbers[at::SOFTNESS as usize],
-                forces: world.remembered(key),
+                regularization: numbers[at::REGULARIZATION as usize],
+                forces: world.warm_start_forces(id),
             });
         }
-        physics.relax();
-        physics.advance(&mut world);
+        simulator.solve();
+        simulator.advance(&mut world);
         write(&model, state, envs, env, &world);
-        record(&world, warm, envs, env, slots);
+        write_warm_start(&world, warm_start, envs, env, max_contacts);
     }
 }
 
-/// Forces of the step before.
-fn remember(warm: &[u32], envs: usize, env: usize, slots: usize, world: &mut State) {
-    world.keys.clear();
-    world.forces.clear();
-    for slot in 0..slots {
-        let key = warm[slot * envs + env];
-        if key != NO_KEY {
+/// Reads the forces of the step before out of `warm_start`.
+pub fn read_warm_start(warm_start: &[u32], envs: usize, env: usize, max_contacts: usize, world: &mut SimulatorState) {
+    world.contact_ids.clear();
+    world.contact_forces.clear();
+    for slot in 0..max_contacts {
+        let id = warm_start[slot * envs + env];
+        if id != NO_CONTACT {
             let mut forces = [0; 4];
-            gather(warm, envs, env, slots + 4 * slot, &mut forces);
-            world.keys.push(key);
-            world.forces.push(forces.map(f32::from_bits));
+            gather(warm_start, envs, env, max_contacts + 4 * slot, &mut forces);
+            world.contact_ids.push(id);
+            world.contact_forces.push(forces.map(f32::from_bits));
         }
     }
-    let mut limits = vec![0; world.limits.len()];
-    gather(warm, envs, env, 5 * slots, &mut limits);
-    world.limits = limits.into_iter().map(f32::from_bits).collect();
+    let mut limits = vec![0; world.limit_forces.len()];
+    gather(warm_start, envs, env, 5 * max_contacts, &mut limits);
+    world.limit_forces = limits.into_iter().map(f32::from_bits).collect();
 }
 
-/// Forces of this step.
-fn record(world: &State, warm: &mut [u32], envs: usize, env: usize, slots: usize) {
-    for slot in 0..slots {
-        let key = world.keys.get(slot).copied().unwrap_or(NO_KEY);
-        let forces = world.forces.get(slot).copied().unwrap_or_default();
-        scatter(warm, envs, env, slot, &[key]);
-        scatter(warm, envs, env, slots + 4 * slot, &forces.map(f32::to_bits));
+/// Writes the forces of a step to `warm_start`.
+pub fn write_warm_start(world: &SimulatorState, warm_start: &mut [u32], envs: usize, env: usize, max_contacts: usize) {
+    for slot in 0..max_contacts {
+        let id = world.contact_ids.get(slot).copied().unwrap_or(NO_CONTACT);
+        let forces = world.contact_forces.get(slot).copied().unwrap_or_default();
+        scatter(warm_start, envs, env, slot, &[id]);
+        scatter(warm_start, envs, env, max_contacts + 4 * slot, &forces.map(f32::to_bits));
     }
-    let limits: Vec<u32> = world.limits.iter().map(|force| force.to_bits()).collect();
-    scatter(warm, envs, env, 5 * slots, &limits);
+    let limits: Vec<u32> = world.limit_forces.iter().map(|force| force.to_bits()).collect();
+    scatter(warm_start, envs, env, 5 * max_contacts, &limits);
 }
 
 /// Reads a row, and gives its place among the world's.
-fn take_row(physics: &mut Physics, rows: &[f32], envs: usize, env: usize, from: usize) -> usize {
-    let quads = physics.model.dofs.len().div_ceil(4);
-    let row = physics.rows.add();
-    let values = &mut physics.rows.row_mut(row)[..4 * quads];
+fn take_row(simulator: &mut Simulator, rows: &[f32], envs: usize, env: usize, from: usize) -> usize {
+    let quads = simulator.model.dofs.len().div_ceil(4);
+    let row = simulator.rows.add();
+    let values = &mut simulator.rows.row_mut(row)[..4 * quads];
     for (quad, numbers) in values.chunks_exact_mut(4).enumerate() {
-        let place = ((from * quads + quad) * envs + env) * 4;
-        numbers.copy_from_slice(&rows[place..place + 4]);
+        let at = ((from * quads + quad) * envs + env) * 4;
+        numbers.copy_from_slice(&rows[at..at + 4]);
     }
     row
 }

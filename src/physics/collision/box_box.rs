@@ -2,7 +2,7 @@
 //! a face, the other box's face, clipped by the sides of the first, touches with its corners; across
 //! two edges, these touch in a point.
 
-use super::{Cuboid, MOST, Touch, Touches, sign};
+use super::{Cuboid, MAX_POINTS, ContactPoint, ContactManifold, sign};
 use glam::{Mat3, Vec3};
 
 /// Squared sine of the angle below which edges are parallel: the faces' axes suffice.
@@ -22,7 +22,7 @@ struct Pair {
     first: Vec3,
     second: Vec3,
     between: Vec3,
-    turn: Mat3,
+    rotation: Mat3,
 }
 
 /// Axes are numbered: three of the first's faces, three of the second's, nine of their edges.
@@ -38,13 +38,13 @@ struct Axis {
     distance: f32,
 }
 
-pub fn box_box(first: &Cuboid, second: &Cuboid, out: &mut Touches) {
-    let inverse = first.turn.transpose();
+pub fn box_box(first: &Cuboid, second: &Cuboid, out: &mut ContactManifold) {
+    let inverse = first.rotation.transpose();
     let pair = Pair {
         first: first.half,
         second: second.half,
         between: inverse * (second.centre - first.centre),
-        turn: inverse * second.turn,
+        rotation: inverse * second.rotation,
     };
     let Some(axis) = least_overlap(&pair) else {
         return;
@@ -60,23 +60,23 @@ impl Pair {
     fn axis(&self, number: usize) -> Vec3 {
         match number {
             0..3 => Vec3::AXES[number],
-            3..FACES => self.turn.col(number - 3),
-            _ => Vec3::AXES[(number - FACES) / 3].cross(self.turn.col(number % 3)),
+            3..FACES => self.rotation.col(number - 3),
+            _ => Vec3::AXES[(number - FACES) / 3].cross(self.rotation.col(number % 3)),
         }
     }
 
     fn distance(&self, along: Vec3) -> f32 {
-        let seen = self.turn.transpose() * along;
+        let seen = self.rotation.transpose() * along;
         self.between.dot(along).abs() - self.first.dot(along.abs()) - self.second.dot(seen.abs())
     }
 
     fn swapped(&self) -> Pair {
-        let turn = self.turn.transpose();
+        let rotation = self.rotation.transpose();
         Pair {
             first: self.second,
             second: self.first,
-            between: -(turn * self.between),
-            turn,
+            between: -(rotation * self.between),
+            rotation,
         }
     }
 }
@@ -121,18 +121,18 @@ fn least_overlap(pair: &Pair) -> Option<Axis> {
 }
 
 /// `edges` numbers the pair of edge directions.
-fn edge_edge(frame: &Cuboid, pair: &Pair, edges: usize, along: Vec3, out: &mut Touches) {
+fn edge_edge(frame: &Cuboid, pair: &Pair, edges: usize, along: Vec3, out: &mut ContactManifold) {
     let normal = along * sign(along.dot(pair.between));
-    let (one, other) = (Vec3::AXES[edges / 3], pair.turn.col(edges % 3));
+    let (one, other) = (Vec3::AXES[edges / 3], pair.rotation.col(edges % 3));
     let [half, other_half] = [pair.first[edges / 3], pair.second[edges % 3]];
-    let seen = -(pair.turn.transpose() * normal);
+    let seen = -(pair.rotation.transpose() * normal);
     let (cosine, sine2) = (one.dot(other), one.cross(other).length_squared());
     let (mut nearest, mut apart) = (f32::INFINITY, [Vec3::ZERO; 2]);
     // Middles of the outermost edges; where either of two may be, the pair nearest to each other.
     for choice in 0..4 {
         let a = outermost(pair.first, normal, edges / 3, choice & 1 != 0);
         let b = outermost(pair.second, seen, edges % 3, choice & 2 != 0);
-        let b = pair.turn * b + pair.between;
+        let b = pair.rotation * b + pair.between;
         let (along_one, along_other) = (one.dot(b - a), other.dot(b - a));
         let s = ((along_one - cosine * along_other) / sine2).clamp(-half, half);
         let t = (cosine * s - along_other).clamp(-other_half, other_half);
@@ -143,8 +143,8 @@ fn edge_edge(frame: &Cuboid, pair: &Pair, edges: usize, along: Vec3, out: &mut T
         }
     }
     let [a, b] = apart;
-    let place = frame.turn * (0.5 * (a + b)) + frame.centre;
-    out.add(0, Touch::new(place, frame.turn * normal, normal.dot(b - a)));
+    let position = frame.rotation * (0.5 * (a + b)) + frame.centre;
+    out.add(0, ContactPoint::new(position, frame.rotation * normal, normal.dot(b - a)));
 }
 
 /// Middle of the edge along `edge` that is farthest out; the other one if two may be and `other`.
@@ -159,7 +159,7 @@ fn outermost(half: Vec3, normal: Vec3, edge: usize, other: bool) -> Vec3 {
 }
 
 /// `frame` is the first of the pair, whose face counts; `way` is -1 if normals lead to it.
-fn face_face(frame: &Cuboid, pair: &Pair, face: usize, way: f32, out: &mut Touches) {
+fn face_face(frame: &Cuboid, pair: &Pair, face: usize, way: f32, out: &mut ContactManifold) {
     let [x, y] = [(face + 1) % 3, (face + 2) % 3];
     let side = sign(pair.between[face]);
     let height = pair.first[face];
@@ -170,7 +170,7 @@ fn face_face(frame: &Cuboid, pair: &Pair, face: usize, way: f32, out: &mut Touch
     points.clip(Vec3::NEG_X, pair.first[x]);
     points.clip(Vec3::Y, pair.first[y]);
     points.clip(Vec3::NEG_Y, pair.first[y]);
-    let normal = frame.turn.col(face) * (side * way);
+    let normal = frame.rotation.col(face) * (side * way);
     for (number, point) in points.as_slice().iter().enumerate() {
         if points.as_slice()[..number]
             .iter()
@@ -178,20 +178,20 @@ fn face_face(frame: &Cuboid, pair: &Pair, face: usize, way: f32, out: &mut Touch
         {
             continue;
         }
-        let mut place = Vec3::ZERO;
-        (place[x], place[y]) = (point.x, point.y);
-        place[face] = side * (height + 0.5 * point.z);
-        let place = frame.turn * place + frame.centre;
-        out.add(number, Touch::new(place, normal, point.z));
+        let mut position = Vec3::ZERO;
+        (position[x], position[y]) = (point.x, point.y);
+        position[face] = side * (height + 0.5 * point.z);
+        let position = frame.rotation * position + frame.centre;
+        out.add(number, ContactPoint::new(position, normal, point.z));
     }
 }
 
 /// The corners, one after the other, of that face of the second box that looks at the first's most.
 fn opposing(pair: &Pair, face: usize, side: f32) -> Polygon {
-    let slopes = pair.turn.row(face);
+    let slopes = pair.rotation.row(face);
     let axis = slopes.abs().max_position();
     let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-    let edge = |axis: usize| pair.turn.col(axis) * pair.second[axis];
+    let edge = |axis: usize| pair.rotation.col(axis) * pair.second[axis];
     let centre = match side * slopes[axis] > 0.0 {
         true => pair.between - edge(axis),
         false => pair.between + edge(axis),
@@ -210,14 +210,14 @@ fn same(one: Vec3, other: Vec3) -> bool {
 
 #[derive(Clone, Copy, Default)]
 struct Polygon {
-    points: [Vec3; MOST],
+    points: [Vec3; MAX_POINTS],
     len: usize,
 }
 
 impl Polygon {
     fn add(&mut self, point: Vec3) {
         // Four corners clipped by four lines are eight at most.
-        if self.len < MOST {
+        if self.len < MAX_POINTS {
             self.points[self.len] = point;
             self.len += 1;
         }

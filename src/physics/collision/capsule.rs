@@ -1,6 +1,6 @@
 //! Spheres and capsules with each other: where the points of their axes nearest to each other are.
 
-use super::{Capsule, Touch, Touches, sign};
+use super::{Capsule, ContactPoint, ContactManifold, sign};
 use glam::Vec3;
 
 /// Squared sine of the angle below which two capsules lie side by side.
@@ -8,7 +8,7 @@ const PARALLEL: f32 = 1e-8;
 /// Axes that pass this close, m per unit of the angle's sine, all but meet.
 const MEETING: f32 = 0.1;
 
-pub fn round_round(first: &Capsule, second: &Capsule, out: &mut Touches) {
+pub fn capsule_capsule(first: &Capsule, second: &Capsule, out: &mut ContactManifold) {
     let across = first.axis.cross(second.axis);
     let sine2 = across.length_squared();
     let crossed = sine2 >= PARALLEL;
@@ -37,13 +37,13 @@ pub fn round_round(first: &Capsule, second: &Capsule, out: &mut Touches) {
     };
     out.add(
         0,
-        touch(first.at(one), direction, gap2.sqrt(), [first, second]),
+        point(first.at(one), direction, gap2.sqrt(), [first, second]),
     );
 }
 
 /// A touch at either end of the stretch that two parallel capsules have in common: each end is one of
 /// the second's, or the first's where that is shorter.
-fn side_by_side(first: &Capsule, second: &Capsule, out: &mut Touches) {
+fn side_by_side(first: &Capsule, second: &Capsule, out: &mut ContactManifold) {
     let between = second.centre - first.centre;
     let end = sign(first.axis.dot(second.axis)) * second.half;
     for (number, end) in [-end, end].into_iter().enumerate() {
@@ -56,15 +56,15 @@ fn side_by_side(first: &Capsule, second: &Capsule, out: &mut Touches) {
         let apart = between + second.axis * other - first.axis * one;
         out.add(
             number,
-            touch(first.at(one), apart, apart.length(), [first, second]),
+            point(first.at(one), apart, apart.length(), [first, second]),
         );
     }
 }
 
 /// Of spheres `gap` apart, that of the first being at `centre`.
-fn touch(centre: Vec3, direction: Vec3, gap: f32, [first, second]: [&Capsule; 2]) -> Touch {
+fn point(centre: Vec3, direction: Vec3, gap: f32, [first, second]: [&Capsule; 2]) -> ContactPoint {
     let normal = direction.try_normalize().unwrap_or(Vec3::X);
     let distance = gap - first.radius - second.radius;
-    let place = centre + normal * (first.radius + 0.5 * distance);
-    Touch::new(place, normal, distance)
+    let position = centre + normal * (first.radius + 0.5 * distance);
+    ContactPoint::new(position, normal, distance)
 }

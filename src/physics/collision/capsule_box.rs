@@ -2,7 +2,7 @@
 //! its axis that is nearest to the box, and one at the end of the stretch of axis that runs on
 //! along the box from there, as MuJoCo has it.
 
-use super::{Capsule, Cuboid, Touch, Touches, sign};
+use super::{Capsule, Cuboid, ContactPoint, ContactManifold, sign};
 use glam::{BVec3, Vec3};
 
 /// What is not nearer by this, m, is as near: rounding does not decide.
@@ -33,8 +33,8 @@ struct Near {
     border: u32,
 }
 
-pub fn round_box(round: &Capsule, cuboid: &Cuboid, out: &mut Touches) {
-    let inverse = cuboid.turn.transpose();
+pub fn capsule_box(round: &Capsule, cuboid: &Cuboid, out: &mut ContactManifold) {
+    let inverse = cuboid.rotation.transpose();
     let axis = Axis {
         middle: inverse * (round.centre - cuboid.centre),
         arm: inverse * round.axis * round.half,
@@ -52,7 +52,7 @@ pub fn round_box(round: &Capsule, cuboid: &Cuboid, out: &mut Touches) {
 }
 
 /// `centre` is in the frame of the box.
-fn sphere_box(number: usize, centre: Vec3, radius: f32, cuboid: &Cuboid, out: &mut Touches) {
+fn sphere_box(number: usize, centre: Vec3, radius: f32, cuboid: &Cuboid, out: &mut ContactManifold) {
     let away = centre.clamp(-cuboid.half, cuboid.half) - centre;
     let outside = away.length();
     let (normal, gap) = match outside > 0.0 {
@@ -61,8 +61,8 @@ fn sphere_box(number: usize, centre: Vec3, radius: f32, cuboid: &Cuboid, out: &m
     };
     let distance = gap - radius;
     if distance < 0.0 {
-        let place = cuboid.turn * (centre + normal * (0.5 * (radius + gap))) + cuboid.centre;
-        out.add(number, Touch::new(place, cuboid.turn * normal, distance));
+        let position = cuboid.rotation * (centre + normal * (0.5 * (radius + gap))) + cuboid.centre;
+        out.add(number, ContactPoint::new(position, cuboid.rotation * normal, distance));
     }
 }
 
@@ -118,27 +118,27 @@ fn edge(axis: &Axis, half: Vec3, direction: usize, corner: u32) -> Option<Near> 
     let crossing = |along: f32| axis.at(along)[direction] / size;
     // Of the lines, then of the edge, then of both.
     let mut along = flat.dot(middle - axis.middle) / flat.length_squared();
-    let mut place = crossing(along);
+    let mut position = crossing(along);
     let mut end = None;
-    if place.abs() > 1.0 {
-        place = sign(place);
-        end = Some(place);
-        let corner = middle + unit * (size * place);
+    if position.abs() > 1.0 {
+        position = sign(position);
+        end = Some(position);
+        let corner = middle + unit * (size * position);
         along = axis.arm.dot(corner - axis.middle) / axis.arm.length_squared();
     }
     if along.abs() > 1.0 {
         along = sign(along);
-        place = crossing(along);
-        if place.abs() > 1.0 {
-            place = sign(place);
-            end = Some(place);
+        position = crossing(along);
+        if position.abs() > 1.0 {
+            position = sign(position);
+            end = Some(position);
         }
     }
     // Once at a corner it counts as there, even if the axis ends before.
     Some(Near {
         along,
-        gap: axis.at(along).distance(middle + unit * (size * place)),
-        point: middle + unit * (size * end.unwrap_or(place)),
+        gap: axis.at(along).distance(middle + unit * (size * position)),
+        point: middle + unit * (size * end.unwrap_or(position)),
         border: match end {
             Some(_) => 7,
             None => 7 ^ 1 << direction,

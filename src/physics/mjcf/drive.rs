@@ -6,10 +6,10 @@
 use super::element::Element;
 use super::error::Result;
 use super::grammar::{ACTUATOR, MOTOR, POSITION};
-use super::worldbody::World;
-use crate::physics::model::{Drive, Joint, Kind};
+use super::worldbody::WorldBuilder;
+use crate::physics::model::{Drive, Joint, JointKind};
 
-impl<'a> World<'a> {
+impl<'a> WorldBuilder<'a> {
     pub fn drives(&mut self, root: &Element<'a>) -> Result<()> {
         for child in root.within("actuator", &ACTUATOR)? {
             let grammar = match child.tag() {
@@ -91,7 +91,7 @@ impl<'a> World<'a> {
     /// Refuses springs and dampers that are not those of a drive.
     fn springs(&self) -> Result<()> {
         for (joint, (element, gains)) in self.model.joints.iter().zip(&self.joints) {
-            let mut dofs = self.model.dofs[joint.v..][..joint.kind.dofs()].iter();
+            let mut dofs = self.model.dofs[joint.v..][..joint.kind.nv()].iter();
             if *gains != [0.0; 2] && dofs.any(|dof| dof.drive.is_none()) {
                 let problem = "has stiffness or damping, but not a motor for each way it moves; remove them, or add motors";
                 return Err(element.error(problem));
@@ -105,11 +105,11 @@ impl<'a> World<'a> {
 fn gear(element: &Element, joint: &Joint) -> Result<(usize, f64)> {
     let gear = element.overlay("gear", [1.0, 0.0, 0.0, 0.0, 0.0, 0.0])?;
     match joint.kind {
-        Kind::Free => {
+        JointKind::Free => {
             Err(element.wrong("joint", "this is free; only hinges and balls can be driven"))
         }
-        Kind::Hinge => Ok((0, gear[0])),
-        Kind::Ball => {
+        JointKind::Hinge => Ok((0, gear[0])),
+        JointKind::Ball => {
             let mut axes = (0..3).filter(|&axis| gear[axis] != 0.0);
             match (axes.next(), axes.next()) {
                 (Some(axis), None) => Ok((axis, gear[axis])),

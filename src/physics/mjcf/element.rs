@@ -1,6 +1,6 @@
 //! An element of the file, its attributes as numbers and words, and errors that say where it stands.
 
-use super::error::{Error, Result};
+use super::error::{MjcfError, Result};
 use super::grammar::Grammar;
 use roxmltree::{Attribute, Node, NodeId};
 use std::path::Path;
@@ -176,7 +176,7 @@ impl<'a> Element<'a> {
     }
 
     /// An error of this element.
-    pub fn error(&self, problem: &str) -> Error {
+    pub fn error(&self, problem: &str) -> MjcfError {
         self.at(
             self.node.range().start,
             format!("{} {problem}", self.title()),
@@ -184,14 +184,14 @@ impl<'a> Element<'a> {
     }
 
     /// An error of what is written in one of its attributes.
-    pub fn wrong(&self, name: &str, problem: &str) -> Error {
+    pub fn wrong(&self, name: &str, problem: &str) -> MjcfError {
         let Some(attribute) = self.attribute(name) else {
             return self.error(&format!("lacks {name}: {problem}"));
         };
         self.faulty(&attribute, problem)
     }
 
-    fn faulty(&self, attribute: &Attribute, problem: &str) -> Error {
+    fn faulty(&self, attribute: &Attribute, problem: &str) -> MjcfError {
         let (name, value) = (attribute.name(), attribute.value());
         let problem = format!("{} has {name}=\"{value}\": {problem}", self.title());
         self.at(attribute.range().start, problem)
@@ -204,8 +204,8 @@ impl<'a> Element<'a> {
         }
     }
 
-    fn at(&self, byte: usize, problem: String) -> Error {
-        Error::Mjcf {
+    fn at(&self, byte: usize, problem: String) -> MjcfError {
+        MjcfError::Mjcf {
             path: self.file.to_path_buf(),
             line: self.node.document().text_pos_at(byte).row,
             problem,

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-pub type Result<T> = std::result::Result<T, Error>;
+pub type Result<T> = std::result::Result<T, MjcfError>;
 
 /// Each message says what is wrong, where, and what to do about it.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum MjcfError {
     #[error("cannot read {}: {error}; check that it exists and may be read", .path.display())]
     Read {
         path: PathBuf,

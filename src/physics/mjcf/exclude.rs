@@ -3,12 +3,12 @@
 use super::element::Element;
 use super::error::Result;
 use super::grammar::{CONTACT, EXCLUDE};
-use super::worldbody::World;
-use crate::physics::collision::Family;
-use crate::physics::model::{Geom, Shape};
+use super::worldbody::WorldBuilder;
+use crate::physics::collision::PairKind;
+use crate::physics::model::{Geom, GeomShape};
 use std::collections::HashSet;
 
-impl<'a> World<'a> {
+impl<'a> WorldBuilder<'a> {
     pub fn pairs(&mut self, root: &Element<'a>) -> Result<()> {
         let apart = self.excluded(root)?;
         let geoms = self.model.geoms.len();
@@ -20,9 +20,9 @@ impl<'a> World<'a> {
 
     fn may_touch(&self, pair: [usize; 2], apart: &HashSet<[usize; 2]>) -> bool {
         let [a, b] = pair.map(|geom| self.touching[geom]);
-        let (first, second) = (&self.places[a.0], &self.places[b.0]);
+        let (first, second) = (&self.elements[a.0], &self.elements[b.0]);
         // The bodies that those welded together hang on.
-        let above = |weld: usize| self.places[self.places[weld].parent].weld;
+        let above = |weld: usize| self.elements[self.elements[weld].parent].weld;
         let relatives = above(first.weld) == second.weld || above(second.weld) == first.weld;
         let moving = first.weld != 0 && second.weld != 0;
         a.1.meet(b.1)
@@ -31,24 +31,24 @@ impl<'a> World<'a> {
             && !apart.contains(&[a.0, b.0])
     }
 
-    /// Pairs of places, both ways round.
+    /// Pairs of elements, both ways round.
     fn excluded(&mut self, root: &Element<'a>) -> Result<HashSet<[usize; 2]>> {
         let mut apart = HashSet::new();
         for child in root.within("contact", &CONTACT)? {
             child.check(&EXCLUDE)?;
             self.name(&child)?;
-            let [a, b] = [self.place(&child, "body1")?, self.place(&child, "body2")?];
+            let [a, b] = [self.named(&child, "body1")?, self.named(&child, "body2")?];
             apart.extend([[a, b], [b, a]]);
         }
         Ok(apart)
     }
 
-    fn place(&self, element: &Element, attribute: &str) -> Result<usize> {
+    fn named(&self, element: &Element, attribute: &str) -> Result<usize> {
         let name = element.naming(attribute)?;
         if name == "world" {
             return Ok(0);
         }
-        let mut names = self.places.iter().map(|place| place.element.name());
+        let mut names = self.elements.iter().map(|known| known.element.name());
         let found = names.position(|known| known == name);
         found.ok_or_else(|| element.wrong(attribute, "there is no such body"))
     }
@@ -62,16 +62,16 @@ pub fn ordered(geoms: &[Geom], pairs: Vec<[usize; 2]>) -> Vec<[usize; 2]> {
         false => [b, a],
     };
     let mut pairs: Vec<[usize; 2]> = pairs.into_iter().map(turned).collect();
-    pairs.sort_by_key(|pair| Family::of(pair.map(|geom| geoms[geom].shape)));
+    pairs.sort_by_key(|pair| PairKind::of(pair.map(|geom| geoms[geom].shape)));
     pairs
 }
 
-/// The shape's place in [`Shape`].
+/// The shape's place in [`GeomShape`].
 fn rank(geom: &Geom) -> usize {
     match geom.shape {
-        Shape::Plane => 0,
-        Shape::Sphere { .. } => 1,
-        Shape::Capsule { .. } => 2,
-        Shape::Box { .. } => 3,
+        GeomShape::Plane => 0,
+        GeomShape::Sphere { .. } => 1,
+        GeomShape::Capsule { .. } => 2,
+        GeomShape::Box { .. } => 3,
     }
 }

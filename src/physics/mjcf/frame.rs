@@ -2,7 +2,7 @@
 
 use super::element::Element;
 use super::error::Result;
-use super::settings::Settings;
+use super::settings::MjcfSettings;
 use glam::{DMat3, DQuat, DVec3};
 use std::ops::Mul;
 
@@ -12,37 +12,37 @@ const SHORTEST: f64 = 1e-9;
 /// Seen from the frame around it.
 #[derive(Clone, Copy, Default, PartialEq)]
 pub struct Frame {
-    pub place: DVec3,
-    pub turn: DQuat,
+    pub position: DVec3,
+    pub rotation: DQuat,
 }
 
 impl Mul for Frame {
     type Output = Frame;
     fn mul(self, inner: Frame) -> Frame {
         Frame {
-            place: self.place + self.turn * inner.place,
-            turn: (self.turn * inner.turn).normalize(),
+            position: self.position + self.rotation * inner.position,
+            rotation: (self.rotation * inner.rotation).normalize(),
         }
     }
 }
 
 impl Frame {
-    pub fn read(element: &Element, settings: &Settings) -> Result<Frame> {
+    pub fn read(element: &Element, settings: &MjcfSettings) -> Result<Frame> {
         let place = element.numbers("pos")?.unwrap_or_default();
         Ok(Frame {
-            place: DVec3::from_array(place),
-            turn: turn(element, settings)?.unwrap_or(DQuat::IDENTITY),
+            position: DVec3::from_array(place),
+            rotation: turn(element, settings)?.unwrap_or(DQuat::IDENTITY),
         })
     }
 }
 
 /// The turn that is given, if one is: the element's own way takes the place of a class's.
-pub fn turn(element: &Element, settings: &Settings) -> Result<Option<DQuat>> {
+pub fn turn(element: &Element, settings: &MjcfSettings) -> Result<Option<DQuat>> {
     element.innermost(|layer| one_turn(layer, settings))
 }
 
 /// What one layer says.
-fn one_turn(element: &Element, settings: &Settings) -> Result<Option<DQuat>> {
+fn one_turn(element: &Element, settings: &MjcfSettings) -> Result<Option<DQuat>> {
     let ways = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
     let mut given = ways.into_iter().filter(|way| element.word(way).is_some());
     let way = given.next();
@@ -69,7 +69,7 @@ fn quat(element: &Element) -> Result<DQuat> {
     }
 }
 
-fn axisangle(element: &Element, settings: &Settings) -> Result<DQuat> {
+fn axisangle(element: &Element, settings: &MjcfSettings) -> Result<DQuat> {
     let [x, y, z, angle] = element.numbers("axisangle")?.unwrap_or_default();
     let axis = unit(element, "axisangle", DVec3::new(x, y, z))?;
     Ok(DQuat::from_axis_angle(axis, angle * settings.angle))
@@ -91,7 +91,7 @@ fn zaxis(element: &Element) -> Result<DQuat> {
 }
 
 /// About x, then about the y and the z that this has turned.
-fn euler(element: &Element, settings: &Settings) -> Result<DQuat> {
+fn euler(element: &Element, settings: &MjcfSettings) -> Result<DQuat> {
     let angles = element.numbers::<3>("euler")?.unwrap_or_default();
     let [x, y, z] = angles.map(|angle| angle * settings.angle);
     let turn = DQuat::from_rotation_x(x) * DQuat::from_rotation_y(y) * DQuat::from_rotation_z(z);

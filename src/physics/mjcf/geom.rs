@@ -3,39 +3,14 @@
 use super::element::Element;
 use super::error::Result;
 use super::frame::{Frame, from_z};
-use super::mass::{Mass, volume};
-use super::settings::Settings;
-use crate::physics::model::{Geom, Shape, Softness};
+use super::mass::Mass;
+use super::settings::MjcfSettings;
+use super::shape::GeomShape64;
+use crate::physics::model::{Geom, SolverParams};
 use glam::DVec3;
 
 /// kg/m^3
 const DENSITY: f64 = 1000.0;
-
-/// In double precision.
-pub enum Form {
-    Plane,
-    Sphere { radius: f64 },
-    Capsule { radius: f64, half: f64 },
-    Box { half: DVec3 },
-}
-
-impl Form {
-    fn shape(&self) -> Shape {
-        match *self {
-            Form::Plane => Shape::Plane,
-            Form::Sphere { radius } => Shape::Sphere {
-                radius: radius as f32,
-            },
-            Form::Capsule { radius, half } => Shape::Capsule {
-                radius: radius as f32,
-                half: half as f32,
-            },
-            Form::Box { half } => Shape::Box {
-                half: half.as_vec3(),
-            },
-        }
-    }
-}
 
 /// A geom in the frame of its element's body.
 pub struct Solid {
@@ -63,10 +38,10 @@ impl Bits {
     }
 }
 
-pub fn read(element: &Element, settings: &Settings) -> Result<Solid> {
-    let (form, frame) = form(element, settings)?;
-    let mass = mass(element, &form)?;
-    let slippery = match element.number("condim")?.unwrap_or(3.0) {
+pub fn read(element: &Element, settings: &MjcfSettings) -> Result<Solid> {
+    let (shape, frame) = shape(element, settings)?;
+    let mass = mass(element, &shape)?;
+    let frictionless = match element.number("condim")?.unwrap_or(3.0) {
         1.0 => true,
         3.0 => false,
         _ => {
@@ -82,15 +57,15 @@ pub fn read(element: &Element, settings: &Settings) -> Result<Solid> {
         geom: Geom {
             name: element.name().to_string(),
             body: None,
-            shape: form.shape(),
-            place: frame.place.as_vec3(),
-            turn: frame.turn.as_quat(),
+            shape: shape.narrowed(),
+            position: frame.position.as_vec3(),
+            rotation: frame.rotation.as_quat(),
             friction: friction as f32,
-            slippery,
-            softness: softness(element, "solref", "solimp")?,
+            frictionless,
+            solver_params: solver_params(element, "solref", "solimp")?,
         },
         frame,
-        mass: Mass::solid(&form, mass).seen_from(&frame),
+        mass: Mass::solid(&shape, mass).seen_from(&frame),
         bits: Bits {
             kind: bits(element, "contype")?,
             touches: bits(element, "conaffinity")?,
@@ -98,7 +73,7 @@ pub fn read(element: &Element, settings: &Settings) -> Result<Solid> {
     })
 }
 
-fn form(element: &Element, settings: &Settings) -> Result<(Form, Frame)> {
+fn shape(element: &Element, settings: &MjcfSettings) -> Result<(GeomShape64, Frame)> {
     let types = ["plane", "sphere", "capsule", "box"];
     let kind = types[element.choice("type", &types)?.unwrap_or(1)];
     let mut size = element.overlay("size", [0.0; 3])?;
@@ -122,18 +97,18 @@ fn form(element: &Element, settings: &Settings) -> Result<(Form, Frame)> {
         let needs = format!("a {kind} has {used} positive numbers there");
         return Err(element.wrong("size", &needs));
     }
-    let form = match kind {
-        "plane" => Form::Plane,
-        "sphere" => Form::Sphere { radius: size[0] },
-        "capsule" => Form::Capsule {
+    let shape = match kind {
+        "plane" => GeomShape64::Plane,
+        "sphere" => GeomShape64::Sphere { radius: size[0] },
+        "capsule" => GeomShape64::Capsule {
             radius: size[0],
             half: size[1],
         },
-        _ => Form::Box {
+        _ => GeomShape64::Box {
             half: DVec3::from_array(size),
         },
     };
-    Ok((form, frame))
+    Ok((shape, frame))
 }
 
 /// The frame halfway between two ends, z pointing to the first, and half their distance.
@@ -150,17 +125,17 @@ fn between(element: &Element, ends: [f64; 6], frame: &Frame) -> Result<(Frame, f
         return Err(element.wrong("fromto", "the two ends are the same"));
     }
     let frame = Frame {
-        place: 0.5 * (a + b),
-        turn: from_z((a - b).normalize()),
+        position: 0.5 * (a + b),
+        rotation: from_z((a - b).normalize()),
     };
     Ok((frame, half))
 }
 
-fn mass(element: &Element, form: &Form) -> Result<f64> {
+fn mass(element: &Element, shape: &GeomShape64) -> Result<f64> {
     let given = element.number("mass")?;
     let density = element.number("density")?.unwrap_or(DENSITY);
     let name = if given.is_some() { "mass" } else { "density" };
-    let mass = given.unwrap_or(density * volume(form));
+    let mass = given.unwrap_or(density * shape.volume());
     match mass >= 0.0 {
         true => Ok(mass),
         false => Err(element.wrong(name, "it must not be negative")),
@@ -176,25 +151,25 @@ fn bits(element: &Element, name: &str) -> Result<u32> {
 }
 
 /// MuJoCo's two attributes of a constraint, of geoms and of limits.
-pub fn softness(element: &Element, spring: &str, impedance: &str) -> Result<Softness> {
-    let usual = Softness::default();
-    let springs = element.overlay(spring, usual.spring.map(f64::from))?;
+pub fn solver_params(element: &Element, solref: &str, solimp: &str) -> Result<SolverParams> {
+    let usual = SolverParams::default();
+    let springs = element.overlay(solref, usual.solref.map(f64::from))?;
     let springs = springs.map(|number| number as f32);
     if springs.iter().any(|number| *number <= 0.0) {
         let problem = "only a time constant and a damping ratio, both positive, are supported";
-        return Err(element.wrong(spring, problem));
+        return Err(element.wrong(solref, problem));
     }
-    let impedances = element.overlay(impedance, usual.impedance.map(f64::from))?;
+    let impedances = element.overlay(solimp, usual.solimp.map(f64::from))?;
     let [least, most, width, middle, power] = impedances;
     let parts = [least, most, middle]
         .iter()
         .all(|part| (0.0..=1.0).contains(part));
     if !parts || width < 0.0 || power < 1.0 {
         let problem = "expected are two impedances from 0 to 1, a width, a midpoint from 0 to 1, and a power of at least 1";
-        return Err(element.wrong(impedance, problem));
+        return Err(element.wrong(solimp, problem));
     }
-    Ok(Softness {
-        spring: springs,
-        impedance: impedances.map(|number| number as f32),
+    Ok(SolverParams {
+        solref: springs,
+        solimp: impedances.map(|number| number as f32),
     })
 }

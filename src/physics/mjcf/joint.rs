@@ -3,10 +3,10 @@
 use super::element::Element;
 use super::error::Result;
 use super::frame::unit;
-use super::geom::softness;
+use super::geom::solver_params;
 use super::grammar::{FREE_JOINT, JOINT};
-use super::settings::Settings;
-use crate::physics::model::{Joint, Kind, Softness};
+use super::settings::MjcfSettings;
+use crate::physics::model::{Joint, JointKind, SolverParams};
 use glam::{DVec3, Vec3};
 
 /// A joint whose place in the model is not known yet.
@@ -19,13 +19,13 @@ pub struct Jointed<'a> {
 }
 
 /// Reads a `freejoint`, to which no default applies, or a `joint`.
-pub fn read<'a>(element: Element<'a>, settings: &Settings) -> Result<Jointed<'a>> {
+pub fn read<'a>(element: Element<'a>, settings: &MjcfSettings) -> Result<Jointed<'a>> {
     if element.tag() == "freejoint" {
         element.check(&FREE_JOINT)?;
-        return Ok(of_kind(element, Kind::Free));
+        return Ok(of_kind(element, JointKind::Free));
     }
     element.check(&JOINT)?;
-    let kinds = [Kind::Hinge, Kind::Ball, Kind::Free];
+    let kinds = [JointKind::Hinge, JointKind::Ball, JointKind::Free];
     let choice = element.choice("type", &["hinge", "ball", "free"])?;
     let mut read = of_kind(element, kinds[choice.unwrap_or(0)]);
     read.armature = not_negative(&read.element, "armature")?;
@@ -33,22 +33,22 @@ pub fn read<'a>(element: Element<'a>, settings: &Settings) -> Result<Jointed<'a>
         not_negative(&read.element, "stiffness")?,
         not_negative(&read.element, "damping")?,
     ];
-    if read.joint.kind != Kind::Free {
+    if read.joint.kind != JointKind::Free {
         shape(&mut read, settings)?;
     }
     Ok(read)
 }
 
-fn of_kind(element: Element, kind: Kind) -> Jointed {
+fn of_kind(element: Element, kind: JointKind) -> Jointed {
     Jointed {
         joint: Joint {
             name: element.name().to_string(),
             kind,
             body: 0,
-            place: Vec3::ZERO,
+            position: Vec3::ZERO,
             axis: Vec3::Z,
             range: None,
-            softness: Softness::default(),
+            solver_params: SolverParams::default(),
             q: 0,
             v: 0,
         },
@@ -59,18 +59,18 @@ fn of_kind(element: Element, kind: Kind) -> Jointed {
 }
 
 /// What a joint has that is not free.
-fn shape(read: &mut Jointed, settings: &Settings) -> Result<()> {
+fn shape(read: &mut Jointed, settings: &MjcfSettings) -> Result<()> {
     let (element, joint) = (&read.element, &mut read.joint);
-    joint.place = DVec3::from_array(element.numbers("pos")?.unwrap_or_default()).as_vec3();
-    if joint.kind == Kind::Hinge {
+    joint.position = DVec3::from_array(element.numbers("pos")?.unwrap_or_default()).as_vec3();
+    if joint.kind == JointKind::Hinge {
         let axis = element.numbers("axis")?.unwrap_or([0.0, 0.0, 1.0]);
         joint.axis = unit(element, "axis", DVec3::from_array(axis))?.as_vec3();
     }
-    joint.softness = softness(element, "solreflimit", "solimplimit")?;
+    joint.solver_params = solver_params(element, "solreflimit", "solimplimit")?;
     let Some(range) = settings.limits(element, "range", "limited")? else {
         return Ok(());
     };
-    if joint.kind == Kind::Ball && range[0] != 0.0 {
+    if joint.kind == JointKind::Ball && range[0] != 0.0 {
         return Err(element.wrong("range", "that of a ball joint is 0 and its largest angle"));
     }
     joint.range = Some(range.map(|angle| (angle * settings.angle) as f32));

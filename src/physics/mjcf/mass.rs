@@ -4,8 +4,8 @@
 use super::element::Element;
 use super::error::Result;
 use super::frame::{Frame, turn};
-use super::geom::Form;
-use super::settings::Settings;
+use super::settings::MjcfSettings;
+use super::shape::GeomShape64;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
@@ -16,36 +16,36 @@ const LEAST: f64 = 1e-15;
 pub struct Mass {
     /// kg
     pub mass: f64,
-    pub centre: DVec3,
+    pub com: DVec3,
     /// About the centre, kg m^2.
     pub inertia: DMat3,
 }
 
 impl Mass {
-    /// Of a solid geom, in its own frame.
-    pub fn solid(form: &Form, mass: f64) -> Mass {
-        let moments = match *form {
-            Form::Plane => DVec3::ZERO,
-            Form::Sphere { radius } => DVec3::splat(0.4 * radius * radius),
-            Form::Capsule { radius, half } => capsule(radius, half),
-            Form::Box { half } => {
+    /// The mass of a solid geom, in its own frame.
+    pub fn solid(shape: &GeomShape64, mass: f64) -> Mass {
+        let moments = match *shape {
+            GeomShape64::Plane => DVec3::ZERO,
+            GeomShape64::Sphere { radius } => DVec3::splat(0.4 * radius * radius),
+            GeomShape64::Capsule { radius, half } => capsule(radius, half),
+            GeomShape64::Box { half } => {
                 let squares = half * half;
                 (DVec3::splat(squares.element_sum()) - squares) / 3.0
             }
         };
         Mass {
             mass,
-            centre: DVec3::ZERO,
+            com: DVec3::ZERO,
             inertia: DMat3::from_diagonal(mass * moments),
         }
     }
 
     /// The same, seen from around the frame it is in.
     pub fn seen_from(self, frame: &Frame) -> Mass {
-        let turn = DMat3::from_quat(frame.turn);
+        let turn = DMat3::from_quat(frame.rotation);
         Mass {
             mass: self.mass,
-            centre: frame.place + frame.turn * self.centre,
+            com: frame.position + frame.rotation * self.com,
             inertia: turn * self.inertia * turn.transpose(),
         }
     }
@@ -55,23 +55,23 @@ impl Mass {
         if mass == 0.0 {
             return Mass::default();
         }
-        let weighted = parts.iter().map(|part| part.mass * part.centre);
-        let centre = weighted.sum::<DVec3>() / mass;
+        let qacc_whitened = parts.iter().map(|part| part.mass * part.com);
+        let com = qacc_whitened.sum::<DVec3>() / mass;
         let inertia = parts.iter().fold(DMat3::ZERO, |sum, part| {
-            sum + part.inertia + part.mass * displaced(part.centre - centre)
+            sum + part.inertia + part.mass * displaced(part.com - com)
         });
         Mass {
             mass,
-            centre,
+            com,
             inertia,
         }
     }
 
     /// What the element `inertial` says.
-    pub fn read(element: &Element, settings: &Settings) -> Result<Mass> {
+    pub fn read(element: &Element, settings: &MjcfSettings) -> Result<Mass> {
         let frame = Frame::read(element, settings)?;
         if element.word("pos").is_none() {
-            return Err(element.error("needs pos, the centre of mass"));
+            return Err(element.error("needs pos, the com of mass"));
         }
         let mass = match element.number("mass")? {
             Some(mass) if mass >= 0.0 => mass,
@@ -80,7 +80,7 @@ impl Mass {
         };
         let about = Mass {
             mass,
-            centre: DVec3::ZERO,
+            com: DVec3::ZERO,
             inertia: moments(element, settings)?,
         };
         Ok(about.seen_from(&frame))
@@ -103,15 +103,6 @@ fn capsule(radius: f64, half: f64) -> DVec3 {
     DVec3::new(across, across, along)
 }
 
-pub fn volume(form: &Form) -> f64 {
-    match *form {
-        Form::Plane => 0.0,
-        Form::Sphere { radius } => 4.0 / 3.0 * PI * radius.powi(3),
-        Form::Capsule { radius, half } => PI * radius * radius * (2.0 * half + 4.0 / 3.0 * radius),
-        Form::Box { half } => 8.0 * half.element_product(),
-    }
-}
-
 /// Inertia of a unit mass at a point.
 fn displaced(at: DVec3) -> DMat3 {
     let outer = DMat3::from_cols(at * at.x, at * at.y, at * at.z);
@@ -119,7 +110,7 @@ fn displaced(at: DVec3) -> DMat3 {
 }
 
 /// The inertia about the centre of mass, in the frame that is given with it.
-fn moments(element: &Element, settings: &Settings) -> Result<DMat3> {
+fn moments(element: &Element, settings: &MjcfSettings) -> Result<DMat3> {
     let diagonal = element.numbers::<3>("diaginertia")?;
     let full = element.numbers::<6>("fullinertia")?;
     let (name, inertia) = match (diagonal, full) {

@@ -4,7 +4,7 @@ use super::element::Element;
 use super::error::Result;
 use super::grammar::{COMPILER, FLAG, OPTION};
 
-pub struct Settings {
+pub struct MjcfSettings {
     /// Radians that the file's unit of angles has.
     pub angle: f64,
     /// A range that is given limits.
@@ -13,9 +13,9 @@ pub struct Settings {
     pub from_geoms: bool,
 }
 
-impl Settings {
-    pub fn read(root: &Element) -> Result<Settings> {
-        let mut settings = Settings {
+impl MjcfSettings {
+    pub fn read(root: &Element) -> Result<MjcfSettings> {
+        let mut settings = MjcfSettings {
             angle: 1_f64.to_radians(),
             autolimits: true,
             from_geoms: false,

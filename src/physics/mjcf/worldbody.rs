@@ -8,8 +8,8 @@ use super::geom::{self, Bits, Solid};
 use super::grammar::{BODY, GEOM, INERTIAL, WORLD};
 use super::joint::{self, Jointed};
 use super::mass::Mass;
-use super::settings::Settings;
-use crate::physics::model::{Body, Dof, Kind, Model, Shape, Tree};
+use super::settings::MjcfSettings;
+use crate::physics::model::{Body, Dof, JointKind, Model, GeomShape, KinematicTree};
 use std::collections::{HashMap, HashSet};
 
 /// Of bodies, of joints and of geoms: more are a mistake, or an attack.
@@ -17,7 +17,7 @@ const MOST: usize = 200;
 
 /// A body of the file, or the world, which is the first. What cannot move is part of the world, and
 /// none of the model's bodies.
-pub struct Place<'a> {
+pub struct BodyElement<'a> {
     pub element: Element<'a>,
     pub parent: usize,
     pub body: Option<usize>,
@@ -30,11 +30,11 @@ pub struct Place<'a> {
     class: Option<usize>,
 }
 
-pub struct World<'a> {
-    pub settings: &'a Settings,
+pub struct WorldBuilder<'a> {
+    pub settings: &'a MjcfSettings,
     pub classes: &'a Classes<'a>,
     pub model: Model,
-    pub places: Vec<Place<'a>>,
+    pub elements: Vec<BodyElement<'a>>,
     /// The place of each of the model's geoms, and what it may touch.
     pub touching: Vec<(usize, Bits)>,
     /// The element of each of the model's joints, and its spring and damper.
@@ -42,17 +42,17 @@ pub struct World<'a> {
     names: HashSet<(&'a str, &'a str)>,
 }
 
-impl<'a> World<'a> {
+impl<'a> WorldBuilder<'a> {
     pub fn read(
         root: &Element<'a>,
-        settings: &'a Settings,
+        settings: &'a MjcfSettings,
         classes: &'a Classes<'a>,
     ) -> Result<Self> {
-        let mut world = World {
+        let mut world = WorldBuilder {
             settings,
             classes,
             model: Model::default(),
-            places: Vec::new(),
+            elements: Vec::new(),
             touching: Vec::new(),
             joints: Vec::new(),
             names: HashSet::new(),
@@ -66,13 +66,13 @@ impl<'a> World<'a> {
             let place = world.body(&element, parent.copied().unwrap_or(0))?;
             known.insert(element.id(), place);
         }
-        world.weigh()?;
+        world.solve_lt()?;
         Ok(world)
     }
 
     /// The world, and what stands in it.
     fn ground(&mut self, root: &Element<'a>, tops: &[Element<'a>]) -> Result<()> {
-        self.places.push(Place {
+        self.elements.push(BodyElement {
             element: root.clone(),
             parent: 0,
             body: None,
@@ -94,12 +94,12 @@ impl<'a> World<'a> {
     fn body(&mut self, element: &Element<'a>, parent: usize) -> Result<usize> {
         element.check(&BODY)?;
         self.name(element)?;
-        let outer = &self.places[parent];
+        let outer = &self.elements[parent];
         let class = self.classes.of_children(element)?.or(outer.class);
         let joints = self.joints_of(element, parent, class)?;
         let moves = !joints.is_empty() || outer.body.is_some();
         let frame = outer.frame * Frame::read(element, self.settings)?;
-        let index = self.places.len();
+        let index = self.elements.len();
         let weld = if joints.is_empty() { outer.weld } else { index };
         let body = match moves {
             true => Some(self.begin(element, parent, &frame)?),
@@ -108,7 +108,7 @@ impl<'a> World<'a> {
         for joint in joints {
             self.joint(joint, &frame)?;
         }
-        self.places.push(Place {
+        self.elements.push(BodyElement {
             element: element.clone(),
             parent,
             body,
@@ -117,7 +117,7 @@ impl<'a> World<'a> {
             frame: if moves { Frame::default() } else { frame },
             class,
         });
-        self.places[index].mass = self.contents(element, index)?;
+        self.elements[index].mass = self.contents(element, index)?;
         Ok(index)
     }
 
@@ -137,7 +137,7 @@ impl<'a> World<'a> {
             joints.push(joint::read(child, self.settings)?);
         }
         together(&joints)?;
-        let free = joints.iter().find(|read| read.joint.kind == Kind::Free);
+        let free = joints.iter().find(|read| read.joint.kind == JointKind::Free);
         match free.filter(|_| parent != 0) {
             None => Ok(joints),
             Some(free) => {
@@ -149,10 +149,10 @@ impl<'a> World<'a> {
     }
 
     /// Mass of the geoms, which it adds, or what is said instead.
-    fn contents(&mut self, element: &Element<'a>, place: usize) -> Result<Mass> {
+    fn contents(&mut self, element: &Element<'a>, index: usize) -> Result<Mass> {
         let mut parts = Vec::new();
         for geom in element.sections("geom") {
-            parts.push(self.geom(geom, place)?);
+            parts.push(self.geom(geom, index)?);
         }
         let said: Vec<Element> = element.sections("inertial").collect();
         let mut mass = Mass::sum(&parts);
@@ -174,10 +174,10 @@ impl<'a> World<'a> {
         if index == MOST {
             return Err(element.error(&format!("is one body too many: {MOST} may move")));
         }
-        let parent = self.places[parent].body;
+        let parent = self.elements[parent].body;
         let (joint, dof) = (model.joints.len(), model.dofs.len());
         if parent.is_none() {
-            model.trees.push(Tree {
+            model.trees.push(KinematicTree {
                 bodies: index..index,
                 dofs: dof..dof,
             });
@@ -185,16 +185,16 @@ impl<'a> World<'a> {
         model.bodies.push(Body {
             name: element.name().to_string(),
             parent,
-            place: frame.place.as_vec3(),
-            turn: frame.turn.as_quat(),
+            position: frame.position.as_vec3(),
+            rotation: frame.rotation.as_quat(),
             mass: 0.0,
-            centre: Default::default(),
+            com: Default::default(),
             inertia: Default::default(),
             joints: joint..joint,
             dofs: dof..dof,
             tree: model.trees.len() - 1,
             last_dof: parent.and_then(|parent| model.bodies[parent].last_dof),
-            looseness: 0.0,
+            invweight0: 0.0,
         });
         model.trees[model.bodies[index].tree].bodies.end = index + 1;
         Ok(index)
@@ -210,17 +210,17 @@ impl<'a> World<'a> {
         }
         let body = model.bodies.len() - 1;
         let mut joint = read.joint;
-        (joint.body, joint.q, joint.v) = (body, model.start.len(), model.dofs.len());
-        let (place, turn) = (frame.place.as_vec3(), frame.turn.as_quat());
+        (joint.body, joint.q, joint.v) = (body, model.qpos0.len(), model.dofs.len());
+        let (position, rotation) = (frame.position.as_vec3(), frame.rotation.as_quat());
         match joint.kind {
-            Kind::Free => {
-                model.start.extend(place.to_array());
-                model.start.extend([turn.w, turn.x, turn.y, turn.z]);
+            JointKind::Free => {
+                model.qpos0.extend(position.to_array());
+                model.qpos0.extend([rotation.w, rotation.x, rotation.y, rotation.z]);
             }
-            Kind::Ball => model.start.extend([1.0, 0.0, 0.0, 0.0]),
-            Kind::Hinge => model.start.push(0.0),
+            JointKind::Ball => model.qpos0.extend([1.0, 0.0, 0.0, 0.0]),
+            JointKind::Hinge => model.qpos0.push(0.0),
         }
-        for _ in 0..joint.kind.dofs() {
+        for _ in 0..joint.kind.nv() {
             dof(model, read.armature);
         }
         model.bodies[body].joints.end += 1;
@@ -230,9 +230,9 @@ impl<'a> World<'a> {
     }
 
     /// Adds a geom, unless it touches nothing: then it has done its work with its mass.
-    fn geom(&mut self, child: Element<'a>, place: usize) -> Result<Mass> {
+    fn geom(&mut self, child: Element<'a>, index: usize) -> Result<Mass> {
         self.name(&child)?;
-        let class = self.places[place].class;
+        let class = self.elements[index].class;
         let element = self.classes.apply(child, class)?;
         element.check(&GEOM)?;
         let Solid {
@@ -241,8 +241,8 @@ impl<'a> World<'a> {
             mass,
             bits,
         } = geom::read(&element, self.settings)?;
-        let around = &self.places[place];
-        if geom.shape == Shape::Plane && around.body.is_some() {
+        let around = &self.elements[index];
+        if geom.shape == GeomShape::Plane && around.body.is_some() {
             return Err(element.wrong("type", "a plane cannot be in a body that moves"));
         }
         if self.model.geoms.len() == MOST {
@@ -251,25 +251,25 @@ impl<'a> World<'a> {
         if bits.any() {
             let frame = around.frame * frame;
             geom.body = around.body;
-            (geom.place, geom.turn) = (frame.place.as_vec3(), frame.turn.as_quat());
+            (geom.position, geom.rotation) = (frame.position.as_vec3(), frame.rotation.as_quat());
             self.model.geoms.push(geom);
-            self.touching.push((place, bits));
+            self.touching.push((index, bits));
         }
         Ok(mass)
     }
 
     /// Hands the masses to the model, and refuses what would move without any.
-    fn weigh(&mut self) -> Result<()> {
-        for (index, place) in self.places.iter().enumerate() {
+    fn solve_lt(&mut self) -> Result<()> {
+        for (index, place) in self.elements.iter().enumerate() {
             let Some(body) = place.body else { continue };
-            let mut welded = self.places.iter().filter(|other| other.weld == index);
+            let mut welded = self.elements.iter().filter(|other| other.weld == index);
             if place.weld == index && !welded.any(|other| other.mass.can_move()) {
                 let problem = "moves but has no mass; give it a geom, or <inertial>";
                 return Err(place.element.error(problem));
             }
             let body = &mut self.model.bodies[body];
             body.mass = place.mass.mass as f32;
-            body.centre = place.mass.centre.as_vec3();
+            body.com = place.mass.com.as_vec3();
             body.inertia = place.mass.inertia.as_mat3();
             if !(body.mass.is_finite() && body.inertia.is_finite()) {
                 let problem = "is too heavy to be reckoned with; check its sizes and density";
@@ -298,7 +298,7 @@ impl<'a> World<'a> {
 /// Refuses joints that one body cannot have together.
 fn together(joints: &[Jointed]) -> Result<()> {
     let several = joints.len() > 1;
-    let free = joints.iter().find(|read| read.joint.kind == Kind::Free);
+    let free = joints.iter().find(|read| read.joint.kind == JointKind::Free);
     if let Some(free) = free.filter(|_| several) {
         let problem = "is free; a body that has such a joint has no other";
         return Err(free.element.error(problem));
@@ -306,7 +306,7 @@ fn together(joints: &[Jointed]) -> Result<()> {
     // A ball turns every way: what comes behind it would add nothing.
     let behind = joints
         .windows(2)
-        .find(|two| two[0].joint.kind == Kind::Ball);
+        .find(|two| two[0].joint.kind == JointKind::Ball);
     match behind {
         Some(two) => Err(two[1]
             .element
@@ -329,7 +329,7 @@ fn dof(model: &mut Model, armature: f32) {
         row: last.map_or(0, |last| last.row + last.depth),
         armature,
         drive: None,
-        looseness: 0.0,
+        invweight0: 0.0,
     });
     let body = &mut model.bodies[body];
     body.dofs.end = index + 1;

@@ -1,6 +1,6 @@
 //! Which joints of a skeleton are which of a person's, and which way its axes point.
 
-use super::{Error, Result};
+use super::{RetargetError, Result};
 use crate::motion::roles::Roles;
 use crate::motion::skeleton::Skeleton;
 use glam::{Mat3, Quat, Vec3};
@@ -188,8 +188,8 @@ fn limb(top: usize, middle: usize, upper: Vec3, lower: Vec3) -> Option<Limb> {
     })
 }
 
-fn unknown(skeleton: &Skeleton, joint: usize, what: &str) -> Error {
-    Error::Skeleton {
+fn unknown(skeleton: &Skeleton, joint: usize, what: &str) -> RetargetError {
+    RetargetError::Skeleton {
         problem: format!("{what} below '{}'", skeleton.names[joint]),
         joints: skeleton.names.join(", "),
     }

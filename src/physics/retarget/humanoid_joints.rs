@@ -1,10 +1,10 @@
 //! The humanoid posed: from what its parts should do in the world to the positions of its joints.
 
 use super::limb::Bend;
-use super::{Error, Figure, Result};
+use super::{RetargetError, TargetPose, Result};
 use crate::physics::drive::rotation_vector;
 use crate::physics::kinematics::{kinematics, store};
-use crate::physics::model::{Geom, Joint, Kind, Model, Shape};
+use crate::physics::model::{Geom, Joint, JointKind, Model};
 use crate::physics::pose::Pose;
 use crate::physics::spatial::Spatial;
 use glam::{Mat3, Quat, Vec3};
@@ -19,7 +19,7 @@ struct Limb<'a> {
 }
 
 /// The joints of a humanoid. Of pairs, the right one is first.
-pub struct Puppet<'a> {
+pub struct HumanoidJoints<'a> {
     model: &'a Model,
     pelvis: &'a Joint,
     torso: &'a Joint,
@@ -29,20 +29,20 @@ pub struct Puppet<'a> {
     feet: [&'a Joint; 2],
 }
 
-impl<'a> Puppet<'a> {
-    pub fn of(model: &'a Model) -> Result<Puppet<'a>> {
+impl<'a> HumanoidJoints<'a> {
+    pub fn of(model: &'a Model) -> Result<HumanoidJoints<'a>> {
         let joint = |body: &str, kind| joint(model, body, kind);
         let limb = |upper, lower| -> Result<Limb> {
             Ok(Limb {
-                ball: joint(upper, Kind::Ball)?,
-                hinge: joint(lower, Kind::Hinge)?,
+                ball: joint(upper, JointKind::Ball)?,
+                hinge: joint(lower, JointKind::Hinge)?,
             })
         };
-        let puppet = Puppet {
+        let joints = HumanoidJoints {
             model,
-            pelvis: joint("pelvis", Kind::Free)?,
-            torso: joint("torso", Kind::Ball)?,
-            head: joint("head", Kind::Ball)?,
+            pelvis: joint("pelvis", JointKind::Free)?,
+            torso: joint("torso", JointKind::Ball)?,
+            head: joint("head", JointKind::Ball)?,
             arms: [
                 limb("right_upper_arm", "right_lower_arm")?,
                 limb("left_upper_arm", "left_lower_arm")?,
@@ -52,32 +52,32 @@ impl<'a> Puppet<'a> {
                 limb("left_thigh", "left_shin")?,
             ],
             feet: [
-                joint("right_foot", Kind::Ball)?,
-                joint("left_foot", Kind::Ball)?,
+                joint("right_foot", JointKind::Ball)?,
+                joint("left_foot", JointKind::Ball)?,
             ],
         };
-        if puppet.soles().next().is_none() {
+        if joints.soles().next().is_none() {
             let model = model.name.clone();
-            return Err(Error::Feet { model });
+            return Err(RetargetError::Feet { model });
         }
-        Ok(puppet)
+        Ok(joints)
     }
 
     /// From hip to ankle, m.
     pub fn leg(&self) -> f32 {
-        let place = |joint: &Joint| self.model.bodies[joint.body].place.length();
+        let position = |joint: &Joint| self.model.bodies[joint.body].position.length();
         let [right, left] =
-            [0, 1].map(|side| place(self.legs[side].hinge) + place(self.feet[side]));
+            [0, 1].map(|side| position(self.legs[side].hinge) + position(self.feet[side]));
         (right + left) / 2.0
     }
 
     /// `[positions]`
-    pub fn positions(&self, figure: &Figure) -> Vec<f32> {
-        let mut q = self.model.start.clone();
+    pub fn positions(&self, figure: &TargetPose) -> Vec<f32> {
+        let mut q = self.model.qpos0.clone();
         let hips = self
             .legs
             .iter()
-            .map(|leg| self.model.bodies[leg.ball.body].place);
+            .map(|leg| self.model.bodies[leg.ball.body].position);
         let hips = hips.sum::<Vec3>() / 2.0;
         let root = figure.hips - figure.pelvis * hips;
         q[self.pelvis.q..][..3].copy_from_slice(&root.to_array());
@@ -95,12 +95,12 @@ impl<'a> Puppet<'a> {
     /// Turns a body on its parent, which is turned by `parent`, as far as its joint can go towards
     /// `wanted`. Returns how it is turned then.
     fn ball(&self, joint: &Joint, parent: Quat, wanted: Quat, q: &mut [f32]) -> Quat {
-        let parent = parent * self.model.bodies[joint.body].turn;
-        let turn = rotation_vector(parent.inverse() * wanted);
+        let parent = parent * self.model.bodies[joint.body].rotation;
+        let rotation = rotation_vector(parent.inverse() * wanted);
         let most = joint.range.map_or(f32::MAX, |[_, most]| most);
-        let turn = Quat::from_scaled_axis(turn.clamp_length_max(most));
-        store(&mut q[joint.q..], turn);
-        parent * turn
+        let rotation = Quat::from_scaled_axis(rotation.clamp_length_max(most));
+        store(&mut q[joint.q..], rotation);
+        parent * rotation
     }
 
     /// Poses a limb; returns how its lower body is turned.
@@ -109,7 +109,7 @@ impl<'a> Puppet<'a> {
         let [least, most] = limb.hinge.range.unwrap_or([-f32::MAX, f32::MAX]);
         // Which way the hinge can go further is the way a limb bends.
         let way = if most + least < 0.0 { -1.0 } else { 1.0 };
-        let own = frame(lower.turn * limb.hinge.axis * way, lower.place);
+        let own = frame(lower.rotation * limb.hinge.axis * way, lower.position);
         let upper = self.ball(
             limb.ball,
             parent,
@@ -118,14 +118,14 @@ impl<'a> Puppet<'a> {
         );
         let angle = (way * bend.angle).clamp(least, most);
         q[limb.hinge.q] = angle;
-        upper * lower.turn * Quat::from_axis_angle(limb.hinge.axis, angle)
+        upper * lower.rotation * Quat::from_axis_angle(limb.hinge.axis, angle)
     }
 
     /// Puts the feet of `q`, `[frame][positions]`, on the ground: all but the lowest few.
     pub fn stand(&self, q: &mut [f32]) {
-        let width = self.model.positions();
+        let width = self.model.nq();
         let mut poses = vec![Pose::default(); self.model.bodies.len()];
-        let mut axes = vec![Spatial::ZERO; self.model.velocities()];
+        let mut axes = vec![Spatial::ZERO; self.model.nv()];
         let mut heights: Vec<f32> = q
             .chunks_exact(width)
             .map(|q| {
@@ -148,26 +148,23 @@ impl<'a> Puppet<'a> {
 
     /// Height of the lowest point of the feet, m.
     fn lowest(&self, poses: &[Pose]) -> f32 {
-        let heights = self.soles().map(|geom| {
-            let pose = geom.pose(poses);
-            lowest(geom.shape, pose.place, pose.turn)
-        });
+        let heights = self.soles().map(|geom| geom.lowest_point(poses));
         heights.fold(f32::INFINITY, f32::min)
     }
 }
 
-fn joint<'a>(model: &'a Model, body: &str, kind: Kind) -> Result<&'a Joint> {
+fn joint<'a>(model: &'a Model, body: &str, kind: JointKind) -> Result<&'a Joint> {
     let found = model.bodies.iter().find(|found| found.name == body);
     let joints = found.map_or(&[][..], |body| &model.joints[body.joints.clone()]);
     match joints {
         [joint] if joint.kind == kind => Ok(joint),
-        _ => Err(Error::Model {
+        _ => Err(RetargetError::Model {
             model: model.name.clone(),
             body: body.to_string(),
             kind: match kind {
-                Kind::Free => "single free",
-                Kind::Ball => "single ball",
-                Kind::Hinge => "single hinge",
+                JointKind::Free => "single free",
+                JointKind::Ball => "single ball",
+                JointKind::Hinge => "single hinge",
             },
         }),
     }
@@ -177,16 +174,4 @@ fn joint<'a>(model: &'a Model, body: &str, kind: Kind) -> Result<&'a Joint> {
 fn frame(hinge: Vec3, bone: Vec3) -> Quat {
     let bone = bone.normalize();
     Quat::from_mat3(&Mat3::from_cols(hinge, bone, hinge.cross(bone)))
-}
-
-/// Height of a shape's lowest point, m.
-fn lowest(shape: Shape, place: Vec3, turn: Quat) -> f32 {
-    let up = turn.inverse() * Vec3::Z;
-    let below = match shape {
-        Shape::Plane => 0.0,
-        Shape::Sphere { radius } => radius,
-        Shape::Capsule { radius, half } => radius + half * up.z.abs(),
-        Shape::Box { half } => half.dot(up.abs()),
-    };
-    place.z - below
 }

@@ -37,7 +37,7 @@ impl Hinge {
             let [down, hinge] = rest(frame);
             let [upper, lower] = limb.bones(frame);
             let hinge = Quat::from_rotation_arc(down, upper) * hinge;
-            frame.turn[limb.top].inverse() * (upper.cross(lower) + REST * hinge)
+            frame.rotation[limb.top].inverse() * (upper.cross(lower) + REST * hinge)
         });
         let axis = seen.sum::<Vec3>().reject_from(limb.upper);
         Hinge {
@@ -52,7 +52,7 @@ impl Hinge {
     /// hinge is where it is found over the whole clip, so that it never jumps.
     pub fn bend(&self, frame: &Frame) -> Bend {
         let [bone, lower] = self.limb.bones(frame);
-        let usual = frame.turn[self.limb.top] * self.axis;
+        let usual = frame.rotation[self.limb.top] * self.axis;
         let across = bone.cross(lower);
         let along = across.dot(usual);
         let trust = STRAIGHT * (1.0 - across.length());
@@ -71,8 +71,8 @@ impl Limb {
     /// Directions of the bones in the world.
     fn bones(&self, frame: &Frame) -> [Vec3; 2] {
         [
-            frame.turn[self.top] * self.upper,
-            frame.turn[self.middle] * self.lower,
+            frame.rotation[self.top] * self.upper,
+            frame.rotation[self.middle] * self.lower,
         ]
     }
 }

@@ -24,7 +24,7 @@ impl Sole {
         low.truncate(frames.len().div_ceil(STANDING));
         let up: Vec3 = low
             .iter()
-            .map(|frame| frame.turn[foot.ankle].inverse() * Vec3::Z)
+            .map(|frame| frame.rotation[foot.ankle].inverse() * Vec3::Z)
             .sum();
         let up = up
             .try_normalize()
@@ -38,7 +38,7 @@ impl Sole {
     }
 
     /// Takes a standing foot to where it is, its toe along x.
-    pub fn turn(&self, frame: &Frame) -> Quat {
-        frame.turn[self.foot.ankle] * self.axes
+    pub fn rotation(&self, frame: &Frame) -> Quat {
+        frame.rotation[self.foot.ankle] * self.axes
     }
 }

@@ -6,7 +6,7 @@ use super::worlds::*;
 fn articulate_agrees() {
     for (scene, model, envs) in scenes() {
         let worlds = Worlds::new(model, envs, 1);
-        let (params, at) = (worlds.articulate_params(), Sections::of(&worlds.model));
+        let (params, at) = (worlds.articulate_params(), DynamicsLayout::of(&worlds.model));
         let trees = worlds.model.trees.len();
         let blank = (
             vec![POISON; worlds.poses.len()],
@@ -20,7 +20,7 @@ fn articulate_agrees() {
             &up(&gpu, &worlds.tables),
             &up(&gpu, &worlds.state),
             &up(&gpu, &worlds.targets),
-            &up(&gpu, &worlds.pushes),
+            &up(&gpu, &worlds.external_forces),
             &poses,
             &dynamics,
             &params,
@@ -30,7 +30,7 @@ fn articulate_agrees() {
             cast_slice(&worlds.tables),
             cast_slice(&worlds.state),
             cast_slice(&worlds.targets),
-            cast_slice(&worlds.pushes),
+            cast_slice(&worlds.external_forces),
             cast_slice(&blank.0),
             cast_slice(&blank.1),
         ];
@@ -44,13 +44,13 @@ fn articulate_agrees() {
                 &poses,
                 &worlds.poses,
                 envs,
-                0..POSE * worlds.model.bodies.len(),
+                0..POSE_DIM * worlds.model.bodies.len(),
                 1e-5,
             );
             for (section, range, bar) in [
                 ("axes", 0..at.factors, 1e-5),
-                ("factors", at.factors..at.weighted, 1e-4),
-                ("weighted", at.weighted..at.velocities, 1e-4),
+                ("factors", at.factors..at.qacc_whitened, 1e-4),
+                ("qacc_whitened", at.qacc_whitened..at.velocities, 1e-4),
                 ("velocities", at.velocities..at.len, 1e-5),
             ] {
                 near(

@@ -9,33 +9,33 @@ fn blows_agree() {
         worlds.solve();
         let params = blows::Params {
             envs: envs as u32,
-            slots: worlds.settings.slots as u32,
+            max_contacts: worlds.settings.max_contacts as u32,
             first: 1,
             share: 0.25,
         };
         let gpu = gpu();
-        let (forces, tallies) = (up(&gpu, &worlds.forces), up(&gpu, &worlds.tallies));
+        let (forces, counters) = (up(&gpu, &worlds.forces), up(&gpu, &worlds.counters));
         blows::launch(
             &gpu,
             &up(&gpu, &worlds.tables),
-            &up(&gpu, &worlds.touches),
-            &up(&gpu, &worlds.keys),
+            &up(&gpu, &worlds.contacts),
+            &up(&gpu, &worlds.contact_ids),
             &up(&gpu, &worlds.counts),
-            &up(&gpu, &worlds.warm),
-            &up(&gpu, &worlds.watched),
+            &up(&gpu, &worlds.warm_start),
+            &up(&gpu, &worlds.force_pairs),
             &forces,
-            &tallies,
+            &counters,
             &params,
         );
         let buffers: [&[u8]; 8] = [
             cast_slice(&worlds.tables),
-            cast_slice(&worlds.touches),
-            cast_slice(&worlds.keys),
+            cast_slice(&worlds.contacts),
+            cast_slice(&worlds.contact_ids),
             cast_slice(&worlds.counts),
-            cast_slice(&worlds.warm),
-            cast_slice(&worlds.watched),
+            cast_slice(&worlds.warm_start),
+            cast_slice(&worlds.force_pairs),
             cast_slice(&worlds.forces),
-            cast_slice(&worlds.tallies),
+            cast_slice(&worlds.counters),
         ];
         let outcome = checked::run(
             &shader::CONTACT_FORCES,
@@ -46,21 +46,21 @@ fn blows_agree() {
         let model = worlds.model.clone();
         blows::twin(
             &model,
-            &worlds.touches,
-            &worlds.keys,
+            &worlds.contacts,
+            &worlds.contact_ids,
             &worlds.counts,
-            &worlds.warm,
-            &worlds.watched,
+            &worlds.warm_start,
+            &worlds.force_pairs,
             &mut worlds.forces,
-            &mut worlds.tallies,
+            &mut worlds.counters,
             &params,
         );
         let fields = worlds.forces.len() / envs;
-        for (form, forces, tallies) in [
+        for (form, forces, counters) in [
             (
                 "launch",
                 forces.read(&gpu).unwrap(),
-                tallies.read(&gpu).unwrap(),
+                counters.read(&gpu).unwrap(),
             ),
             ("checked", outcome.of(6), outcome.of(7)),
         ] {
@@ -72,7 +72,7 @@ fn blows_agree() {
                 0..fields,
                 1e-4,
             );
-            assert_eq!(tallies, worlds.tallies, "{scene}, {form}");
+            assert_eq!(counters, worlds.counters, "{scene}, {form}");
         }
     }
 }

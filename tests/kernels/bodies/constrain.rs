@@ -7,7 +7,7 @@ fn constrain_agrees() {
     for (scene, model, envs) in scenes() {
         let worlds = Worlds::new(model, envs, 2);
         let (params, joints) = (worlds.constrain_params(), worlds.model.joints.len());
-        let row_groups = constrain::row_groups(&worlds.model, worlds.settings.slots);
+        let row_groups = constrain::row_groups(&worlds.model, worlds.settings.max_contacts);
         let blank = (
             vec![POISON; worlds.rows.len()],
             vec![POISON; worlds.constraints.len()],
@@ -20,8 +20,8 @@ fn constrain_agrees() {
             &up(&gpu, &worlds.tables),
             &up(&gpu, &worlds.state),
             &up(&gpu, &worlds.dynamics),
-            &up(&gpu, &worlds.touches),
-            &up(&gpu, &worlds.keys),
+            &up(&gpu, &worlds.contacts),
+            &up(&gpu, &worlds.contact_ids),
             &up(&gpu, &worlds.counts),
             &rows,
             &constraints,
@@ -32,8 +32,8 @@ fn constrain_agrees() {
             cast_slice(&worlds.tables),
             cast_slice(&worlds.state),
             cast_slice(&worlds.dynamics),
-            cast_slice(&worlds.touches),
-            cast_slice(&worlds.keys),
+            cast_slice(&worlds.contacts),
+            cast_slice(&worlds.contact_ids),
             cast_slice(&worlds.counts),
             cast_slice(&blank.0),
             cast_slice(&blank.1),
@@ -52,8 +52,8 @@ fn constrain_agrees() {
         assert!(contacts as usize > envs, "{scene}: {contacts} contacts");
         for (form, (rows, constraints)) in [("launch", launched), ("checked", checked)] {
             let what = |section: &str| format!("{scene}, {form}, {section}");
-            for slot in 0..worlds.settings.slots + joints {
-                let fields = slot * CONSTRAINT..(slot + 1) * CONSTRAINT;
+            for slot in 0..worlds.settings.max_contacts + joints {
+                let fields = slot * CONSTRAINT_DIM..(slot + 1) * CONSTRAINT_DIM;
                 let found = acting(&constraints, &worlds.constraints);
                 near(
                     &what("constraints"),

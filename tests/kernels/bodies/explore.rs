@@ -6,9 +6,9 @@ use super::worlds::*;
 fn explore_agrees_bit_for_bit() {
     let params = explore::Params {
         envs: 129,
-        deviation: 0.5,
+        std: 0.5,
         seed: 7,
-        clock: 3,
+        step_counter: 3,
         stream: 11,
     };
     let mut wanted = vec![POISON; 129 * 28];

@@ -8,7 +8,7 @@ fn restart_agrees() {
         let mut worlds = Worlds::new(model, envs, 5);
         let starts = worlds.state.clone();
         worlds.solve();
-        let positions = worlds.model.positions();
+        let positions = worlds.model.nq();
         let mask: Vec<u32> = (0..envs as u32)
             .map(|env| u32::from(env % 3 == 1))
             .collect();
@@ -18,22 +18,22 @@ fn restart_agrees() {
         worlds.state[positions * envs + 6] = 900.0;
         let params = restart::Params {
             envs: envs as u32,
-            fastest: 1000.0,
+            max_speed: 1000.0,
         };
         let gpu = gpu();
-        let (state, warm) = (up(&gpu, &worlds.state), up(&gpu, &worlds.warm));
+        let (state, warm_start) = (up(&gpu, &worlds.state), up(&gpu, &worlds.warm_start));
         let forces = up(&gpu, &worlds.forces);
-        let tallies = up(&gpu, &worlds.tallies);
+        let counters = up(&gpu, &worlds.counters);
         restart::launch(
             &gpu,
             &up(&gpu, &worlds.tables),
             &up(&gpu, &mask),
             &up(&gpu, &starts),
             &state,
-            &warm,
-            &up(&gpu, &worlds.watched),
+            &warm_start,
+            &up(&gpu, &worlds.force_pairs),
             &forces,
-            &tallies,
+            &counters,
             &params,
         );
         let buffers: [&[u8]; 8] = [
@@ -41,10 +41,10 @@ fn restart_agrees() {
             cast_slice(&mask),
             cast_slice(&starts),
             cast_slice(&worlds.state),
-            cast_slice(&worlds.warm),
-            cast_slice(&worlds.watched),
+            cast_slice(&worlds.warm_start),
+            cast_slice(&worlds.force_pairs),
             cast_slice(&worlds.forces),
-            cast_slice(&worlds.tallies),
+            cast_slice(&worlds.counters),
         ];
         let outcome = checked::run(
             &shader::RESET_WORLDS,
@@ -54,31 +54,31 @@ fn restart_agrees() {
         );
         restart::twin(
             &worlds.model.clone(),
-            worlds.settings.slots,
+            worlds.settings.max_contacts,
             &mask,
             &starts,
             &mut worlds.state,
-            &mut worlds.warm,
-            &worlds.watched,
+            &mut worlds.warm_start,
+            &worlds.force_pairs,
             &mut worlds.forces,
-            &mut worlds.tallies,
+            &mut worlds.counters,
             &params,
         );
-        let broken = &worlds.tallies[blows::BROKEN * envs..][..envs];
-        assert_eq!(broken.iter().sum::<u32>(), 3, "{scene}");
+        let diverged = &worlds.counters[blows::DIVERGED * envs..][..envs];
+        assert_eq!(diverged.iter().sum::<u32>(), 3, "{scene}");
         let bits = |values: &[f32]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
         let launched = (
             state.read(&gpu).unwrap(),
-            warm.read(&gpu).unwrap(),
+            warm_start.read(&gpu).unwrap(),
             forces.read(&gpu).unwrap(),
-            tallies.read(&gpu).unwrap(),
+            counters.read(&gpu).unwrap(),
         );
         let checked = (outcome.of(3), outcome.of(4), outcome.of(6), outcome.of(7));
-        for (form, (state, warm, forces, tallies)) in [("launch", launched), ("checked", checked)] {
+        for (form, (state, warm_start, forces, counters)) in [("launch", launched), ("checked", checked)] {
             assert_eq!(bits(&state), bits(&worlds.state), "{scene}, {form}");
-            assert_eq!(warm, worlds.warm, "{scene}, {form}");
+            assert_eq!(warm_start, worlds.warm_start, "{scene}, {form}");
             assert_eq!(forces, worlds.forces, "{scene}, {form}");
-            assert_eq!(tallies, worlds.tallies, "{scene}, {form}");
+            assert_eq!(counters, worlds.counters, "{scene}, {form}");
         }
     }
 }

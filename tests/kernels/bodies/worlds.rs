@@ -4,15 +4,15 @@ pub(super) use crate::checked;
 pub(super) use crate::inputs::{Draw, POISON, POISON_WHOLE, gpu};
 pub(super) use bytemuck::{Pod, cast_slice};
 pub(super) use footwork::physics::mjcf;
-pub(super) use footwork::physics::model::{Kind, Model};
-pub(super) use footwork::physics::simulator::{Physics, Settings, State};
+pub(super) use footwork::physics::model::{JointKind, Model};
+pub(super) use footwork::physics::simulator::{Simulator, SolverOptions, SimulatorState};
 pub(super) use footwork::physics::scenes;
 pub(super) use footwork::physics::model_table::tables;
 pub(super) use footwork::gpu::kernel::groups;
 pub(super) use footwork::gpu::{Buffer, Gpu, shader};
-pub(super) use footwork::kernels::physics::smooth_dynamics::{self, POSE, Sections};
+pub(super) use footwork::kernels::physics::smooth_dynamics::{self, POSE_DIM, DynamicsLayout};
 pub(super) use footwork::kernels::physics::strided::gather;
-pub(super) use footwork::kernels::physics::make_constraints::{self, CONSTRAINT, TOUCH};
+pub(super) use footwork::kernels::physics::make_constraints::{self, CONSTRAINT_DIM, CONTACT_DIM};
 pub(super) use footwork::kernels::physics::{contact_forces, collision, random_targets, proprioception, reset_worlds, solve_and_integrate};
 pub(super) use glam::{Quat, Vec3};
 pub(super) use std::path::Path;
@@ -22,28 +22,28 @@ pub(super) use std::sync::Arc;
 #[derive(Clone)]
 pub struct Worlds {
     pub model: Arc<Model>,
-    pub settings: Settings,
+    pub settings: SolverOptions,
     pub envs: usize,
     pub tables: Vec<u32>,
-    pub watched: Vec<u32>,
+    pub force_pairs: Vec<u32>,
     pub state: Vec<f32>,
     pub targets: Vec<f32>,
-    pub pushes: Vec<f32>,
+    pub external_forces: Vec<f32>,
     pub poses: Vec<f32>,
     pub dynamics: Vec<f32>,
-    pub touches: Vec<f32>,
-    pub keys: Vec<u32>,
+    pub contacts: Vec<f32>,
+    pub contact_ids: Vec<u32>,
     pub counts: Vec<u32>,
     pub rows: Vec<f32>,
     pub constraints: Vec<f32>,
-    pub warm: Vec<u32>,
+    pub warm_start: Vec<u32>,
     pub forces: Vec<f32>,
-    pub tallies: Vec<u32>,
+    pub counters: Vec<u32>,
 }
 
 /// A random state: characters in any attitude near the ground, some joints past their ranges.
-pub fn random_state(model: &Model, draw: &mut Draw) -> State {
-    let mut state = State::new(model);
+pub fn random_state(model: &Model, draw: &mut Draw) -> SimulatorState {
+    let mut state = SimulatorState::new(model);
     let turn = |draw: &mut Draw, most: f32| {
         let axis = Vec3::new(draw.normal(), draw.normal(), draw.normal()).normalize();
         let [x, y, z, w] = Quat::from_axis_angle(axis, draw.within(most)).to_array();
@@ -52,14 +52,14 @@ pub fn random_state(model: &Model, draw: &mut Draw) -> State {
     for joint in &model.joints {
         let q = &mut state.q[joint.q..];
         match joint.kind {
-            Kind::Free => {
+            JointKind::Free => {
                 q[0] += draw.within(0.3);
                 q[1] += draw.within(0.3);
                 q[2] = 0.5 + draw.within(0.4);
                 q[3..7].copy_from_slice(&turn(draw, 3.0));
             }
-            Kind::Ball => q[..4].copy_from_slice(&turn(draw, 1.5)),
-            Kind::Hinge => {
+            JointKind::Ball => q[..4].copy_from_slice(&turn(draw, 1.5)),
+            JointKind::Hinge => {
                 let [low, high] = joint.range.unwrap_or([-1.0, 1.0]);
                 q[0] = 0.5 * (low + high) + draw.within(0.55 * (high - low));
             }
@@ -74,11 +74,11 @@ pub fn random_state(model: &Model, draw: &mut Draw) -> State {
 impl Worlds {
     pub fn new(model: Model, envs: usize, seed: u32) -> Worlds {
         let model = Arc::new(model);
-        let settings = Settings::training(&model);
-        let (slots, joints, bodies) = (settings.slots, model.joints.len(), model.bodies.len());
+        let settings = SolverOptions::fast(&model);
+        let (max_contacts, joints, bodies) = (settings.max_contacts, model.joints.len(), model.bodies.len());
         let quads = model.dofs.len().div_ceil(4);
         let mut draw = Draw::new(seed);
-        let mut state = vec![0.0; (model.positions() + model.velocities()) * envs];
+        let mut state = vec![0.0; (model.nq() + model.nv()) * envs];
         for env in 0..envs {
             smooth_dynamics::write(
                 &model,
@@ -88,32 +88,32 @@ impl Worlds {
                 &random_state(&model, &mut draw),
             );
         }
-        let watched: Vec<u32> = vec![2, 0, 1, 2, bodies as u32 - 1];
-        let rows = make_constraints::rows(&model, slots) * quads * 4;
+        let force_pairs: Vec<u32> = vec![2, 0, 1, 2, bodies as u32 - 1];
+        let rows = make_constraints::rows(&model, max_contacts) * quads * 4;
         let poison = |fields: usize| vec![POISON; fields * envs];
         let targets = draw.normals(model.driven() * envs);
-        let mut pushes = vec![0.0; 6 * bodies * envs];
-        for push in pushes.iter_mut().step_by(7) {
+        let mut external_forces = vec![0.0; 6 * bodies * envs];
+        for push in external_forces.iter_mut().step_by(7) {
             *push = draw.within(50.0);
         }
-        let mut warm = vec![0; solve_and_integrate::warm(slots, joints) * envs];
-        warm[..slots * envs].fill(solve_and_integrate::NO_KEY);
+        let mut warm_start = vec![0; solve_and_integrate::warm_start(max_contacts, joints) * envs];
+        warm_start[..max_contacts * envs].fill(solve_and_integrate::NO_CONTACT);
         let mut worlds = Worlds {
             tables: tables(&model, &settings).expect("it fits"),
-            forces: poison(3 * (bodies + watched.len() / 2)),
-            watched,
+            forces: poison(3 * (bodies + force_pairs.len() / 2)),
+            force_pairs,
             state,
             targets,
-            pushes,
-            poses: poison(POSE * bodies),
-            dynamics: poison(Sections::of(&model).len),
-            touches: poison(TOUCH * slots),
-            keys: vec![POISON_WHOLE; slots * envs],
+            external_forces,
+            poses: poison(POSE_DIM * bodies),
+            dynamics: poison(DynamicsLayout::of(&model).len),
+            contacts: poison(CONTACT_DIM * max_contacts),
+            contact_ids: vec![POISON_WHOLE; max_contacts * envs],
             counts: vec![POISON_WHOLE; 2 * envs],
             rows: poison(rows),
-            constraints: poison((slots + joints) * CONSTRAINT),
-            warm,
-            tallies: vec![0; contact_forces::TALLIES * envs],
+            constraints: poison((max_contacts + joints) * CONSTRAINT_DIM),
+            warm_start,
+            counters: vec![0; contact_forces::COUNTERS * envs],
             envs,
             settings,
             model,
@@ -122,7 +122,7 @@ impl Worlds {
         // Forces to remember.
         worlds.step();
         // What is not written from here on must be poison.
-        worlds.touches.fill(POISON);
+        worlds.contacts.fill(POISON);
         worlds.rows.fill(POISON);
         worlds.constraints.fill(POISON);
         worlds.articulate();
@@ -131,8 +131,8 @@ impl Worlds {
         worlds
     }
 
-    pub fn physics(&self) -> Physics {
-        Physics::new(self.model.clone(), self.settings)
+    pub fn physics(&self) -> Simulator {
+        Simulator::new(self.model.clone(), self.settings)
     }
 
     pub fn articulate_params(&self) -> smooth_dynamics::Params {
@@ -148,7 +148,7 @@ impl Worlds {
             &mut self.physics(),
             &self.state,
             &self.targets,
-            &self.pushes,
+            &self.external_forces,
             &mut self.poses,
             &mut self.dynamics,
             &params,
@@ -159,12 +159,12 @@ impl Worlds {
         collision::twin(
             &self.model,
             &self.poses,
-            &mut self.touches,
-            &mut self.keys,
+            &mut self.contacts,
+            &mut self.contact_ids,
             &mut self.counts,
             &collision::Params {
                 envs: self.envs as u32,
-                slots: self.settings.slots as u32,
+                max_contacts: self.settings.max_contacts as u32,
             },
         );
     }
@@ -182,8 +182,8 @@ impl Worlds {
             &mut self.physics(),
             &self.state,
             &self.dynamics,
-            &self.touches,
-            &self.keys,
+            &self.contacts,
+            &self.contact_ids,
             &self.counts,
             &mut self.rows,
             &mut self.constraints,
@@ -206,9 +206,9 @@ impl Worlds {
             &self.dynamics,
             &self.rows,
             &self.constraints,
-            &self.keys,
+            &self.contact_ids,
             &self.counts,
-            &mut self.warm,
+            &mut self.warm_start,
             &params,
         );
     }

@@ -2,9 +2,9 @@
 
 use super::parse;
 use footwork::physics::assemble::{Part, assemble};
-use footwork::physics::collision::Family;
+use footwork::physics::collision::PairKind;
 use footwork::physics::humanoid::{humanoid, punching_box};
-use footwork::physics::model::{Kind, Model, Shape};
+use footwork::physics::model::{JointKind, Model, GeomShape};
 use glam::{Quat, Vec3};
 use std::collections::HashSet;
 use std::f32::consts::FRAC_PI_2;
@@ -13,8 +13,8 @@ fn part<'a>(prefix: &'a str, model: &'a Model, x: f32) -> Part<'a> {
     Part {
         prefix,
         model,
-        place: Vec3::X * x,
-        turn: 0.0,
+        position: Vec3::X * x,
+        rotation: 0.0,
     }
 }
 
@@ -30,14 +30,14 @@ fn a_humanoid_and_a_box() {
     let (body, block) = (humanoid(), punching_box());
     let world = assemble(&[part("", &body, 0.0), part("", &block, 1.0)]);
     assert_eq!(world.bodies.len(), 16);
-    assert_eq!(world.velocities(), 40);
+    assert_eq!(world.nv(), 40);
     assert_eq!(
         (world.trees[1].bodies.clone(), world.trees[1].dofs.clone()),
         (15..16, 34..40)
     );
-    assert_eq!(world.start[43..46], [1.0, 0.0, 0.9]);
+    assert_eq!(world.qpos0[43..46], [1.0, 0.0, 0.9]);
     // One ground; the box touches it and each of the body's 18 geoms.
-    let planes = world.geoms.iter().filter(|geom| geom.shape == Shape::Plane);
+    let planes = world.geoms.iter().filter(|geom| geom.shape == GeomShape::Plane);
     assert_eq!(planes.count(), 1);
     assert_eq!(world.pairs.len(), body.pairs.len() + 1 + 18);
     coherent(&world);
@@ -48,7 +48,7 @@ fn two_humanoids() {
     let body = humanoid();
     let red = part("red/", &body, -1.0);
     let blue = Part {
-        turn: FRAC_PI_2,
+        rotation: FRAC_PI_2,
         ..part("blue/", &body, 1.0)
     };
     let world = assemble(&[red, blue]);
@@ -61,18 +61,18 @@ fn two_humanoids() {
     // All but names and places is the same of both.
     for index in 0..15 {
         let (one, other) = (&world.bodies[index], &world.bodies[index + 15]);
-        assert_eq!((one.mass, one.looseness), (other.mass, other.looseness));
+        assert_eq!((one.mass, one.invweight0), (other.mass, other.invweight0));
         assert_eq!(one.parent.map(|parent| parent + 15), other.parent);
     }
     for index in 0..34 {
         let (one, other) = (&world.dofs[index], &world.dofs[index + 34]);
         assert_eq!((one.drive, one.depth), (other.drive, other.depth));
-        assert_eq!(one.row + body.packed(), other.row);
+        assert_eq!(one.row + body.nm(), other.row);
     }
-    let place = Vec3::from_slice(&world.start[43..]);
+    let place = Vec3::from_slice(&world.qpos0[43..]);
     assert!(place.abs_diff_eq(Vec3::new(1.0, 0.0, body.start[2]), 1e-6));
     let turn = Quat::from_rotation_z(FRAC_PI_2);
-    assert_eq!(world.start[46..50], [turn.w, turn.x, turn.y, turn.z]);
+    assert_eq!(world.qpos0[46..50], [rotation.w, rotation.x, rotation.y, rotation.z]);
     // Twice a body's own, and each geom with each of the other's.
     assert_eq!(world.pairs.len(), 2 * body.pairs.len() + 18 * 18);
 }
@@ -85,11 +85,11 @@ fn a_fastened_model_is_moved_with_its_place() {
     let moved = Part {
         prefix: "a/",
         model: &model,
-        place: Vec3::Y,
-        turn: FRAC_PI_2,
+        position: Vec3::Y,
+        rotation: FRAC_PI_2,
     };
     let world = assemble(&[moved]);
-    assert!((world.bodies[0].place - Vec3::new(0.0, 2.0, 2.0)).length() < 1e-6);
+    assert!((world.bodies[0].position - Vec3::new(0.0, 2.0, 2.0)).length() < 1e-6);
     assert_eq!(
         (world.bodies[0].name.as_str(), world.geoms[0].name.as_str()),
         ("", "a/ground")
@@ -101,16 +101,16 @@ fn coherent(world: &Model) {
     let (mut q, mut v) = (0, 0);
     for (index, joint) in world.joints.iter().enumerate() {
         assert_eq!((joint.q, joint.v), (q, v));
-        q += joint.kind.positions();
+        q += joint.kind.nq();
         v += joint.kind.dofs();
         assert!(world.bodies[joint.body].joints.contains(&index));
         assert!(world.dofs[joint.v..v].iter().all(|dof| dof.joint == index));
         assert_eq!(
-            joint.kind == Kind::Free,
+            joint.kind == JointKind::Free,
             world.bodies[joint.body].parent.is_none()
         );
     }
-    assert_eq!((q, v), (world.start.len(), world.dofs.len()));
+    assert_eq!((q, v), (world.qpos0.len(), world.dofs.len()));
     let mut row = 0;
     for (index, dof) in world.dofs.iter().enumerate() {
         assert_eq!(dof.row, row);
@@ -134,6 +134,6 @@ fn coherent(world: &Model) {
     assert!(
         world
             .pairs
-            .is_sorted_by_key(|pair| Family::of(shapes(pair)))
+            .is_sorted_by_key(|pair| PairKind::of(shapes(pair)))
     );
 }

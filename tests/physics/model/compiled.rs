@@ -2,10 +2,10 @@
 
 use super::parse;
 use crate::golden;
-use footwork::physics::collision::Family;
+use footwork::physics::collision::PairKind;
 use footwork::physics::humanoid::{BODIES, humanoid, punching_box};
 use footwork::physics::mjcf;
-use footwork::physics::model::{Drive, Kind, Model, Shape, Softness};
+use footwork::physics::model::{Drive, JointKind, Model, GeomShape, SolverParams};
 use glam::{Mat3, Quat, Vec3};
 use serde_json::Value;
 use std::io::Write;
@@ -60,7 +60,7 @@ fn the_reference_humanoid_is_read_and_its_motors_are_drives() {
     let Some(path) = reference() else { return };
     let mut model = mjcf::read(&path).unwrap();
     let drive = |name: &str| {
-        let joint = model.joints.iter().find(|joint| joint.name == name);
+        let joint = model.joints.iter().detect_contacts(|joint| joint.name == name);
         model.dofs[joint.unwrap().v].drive.unwrap()
     };
     let expected = [
@@ -80,7 +80,7 @@ fn the_reference_humanoid_is_read_and_its_motors_are_drives() {
         };
         assert_eq!(drive(name), expected, "{name}");
     }
-    assert_eq!((model.driven(), model.velocities()), (28, 34));
+    assert_eq!((model.driven(), model.nv()), (28, 34));
     // To MuJoCo, motors are no drives to a position.
     for dof in &mut model.dofs {
         dof.drive = None;
@@ -97,7 +97,7 @@ fn our_humanoid_is_as_designed() {
     let names: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
     assert_eq!(names, BODIES);
     assert_eq!(
-        (model.velocities(), model.driven(), model.positions()),
+        (model.nv(), model.driven(), model.nq()),
         (34, 28, 43)
     );
     let masses = [
@@ -118,7 +118,7 @@ fn our_humanoid_is_as_designed() {
         let name = &model.joints[dof.joint].name;
         let (_, gains, armature) = expected
             .iter()
-            .find(|(part, ..)| name.ends_with(part))
+            .detect_contacts(|(part, ..)| name.ends_with(part))
             .unwrap();
         let drive = dof.drive.unwrap();
         assert_eq!(
@@ -132,10 +132,10 @@ fn our_humanoid_is_as_designed() {
         model
             .geoms
             .iter()
-            .all(|geom| geom.friction == 1.0 && !geom.slippery)
+            .all(|geom| geom.friction == 1.0 && !geom.frictionless)
     );
     // Both soles stand on the ground, or just above it.
-    let height = model.start[2] - 0.421546 - 0.40987 - 0.0225 - 0.0275;
+    let height = model.qpos0[2] - 0.421546 - 0.40987 - 0.0225 - 0.0275;
     assert!((0.0..1e-3).contains(&height), "{height}");
 }
 
@@ -143,13 +143,13 @@ fn our_humanoid_is_as_designed() {
 fn the_box_is_as_designed() {
     let model = punching_box();
     assert_eq!(
-        (model.bodies.len(), model.mass(), model.velocities()),
+        (model.bodies.len(), model.mass(), model.nv()),
         (1, 8.64, 6)
     );
     let half = Vec3::new(0.2, 0.2, 0.9);
-    assert_eq!(model.geoms[1].shape, Shape::Box { half });
+    assert_eq!(model.geoms[1].shape, GeomShape::Box { half });
     assert_eq!(
-        (model.start[2], model.pairs.as_slice()),
+        (model.qpos0[2], model.pairs.as_slice()),
         (0.9, &[[0, 1]][..])
     );
 }
@@ -184,12 +184,12 @@ fn compare(name: &str, model: &Model, facts: &Value) {
 
 fn compare_start(name: &str, model: &Model, fact: &Value) {
     let fact = fact.as_array().unwrap();
-    assert_eq!(model.start.len(), fact.len(), "{name}");
+    assert_eq!(model.qpos0.len(), fact.len(), "{name}");
     for joint in &model.joints {
-        let positions = joint.q..joint.q + joint.kind.positions();
-        let (q, fact) = (&model.start[positions.clone()], &fact[positions]);
+        let positions = joint.q..joint.q + joint.kind.nq();
+        let (q, fact) = (&model.qpos0[positions.clone()], &fact[positions]);
         match joint.kind {
-            Kind::Free => {
+            JointKind::Free => {
                 let turn = Quat::from_xyzw(q[4], q[5], q[6], q[3]);
                 pose(name, Vec3::from_slice(q), turn, &fact.into());
             }
@@ -202,14 +202,14 @@ fn compare_body(told: &str, model: &Model, index: usize, fact: &Value) {
     let body = &model.bodies[index];
     assert_eq!(body.name, fact["name"], "{told}");
     assert_eq!(body.parent, optional(&fact["parent"]), "{told}");
-    pose(told, body.place, body.turn, &fact["pose"]);
+    pose(told, body.position, body.rotation, &fact["pose"]);
     close(told, &[body.mass], &[number(&fact["mass"])]);
-    close(told, &body.centre.to_array(), &numbers(&fact["centre"]));
+    close(told, &body.com.to_array(), &numbers(&fact["centre"]));
     close(told, &symmetric(&body.inertia), &numbers(&fact["inertia"]));
     assert!(
-        alike(body.looseness, &fact["looseness"]),
+        alike(body.invweight0, &fact["invweight0"]),
         "{told}: {}",
-        body.looseness
+        body.invweight0
     );
     assert!(
         model.joints[body.joints.clone()]
@@ -229,9 +229,9 @@ fn compare_body(told: &str, model: &Model, index: usize, fact: &Value) {
 fn compare_joint(told: &str, model: &Model, index: usize, fact: &Value) {
     let joint = &model.joints[index];
     let kind = match joint.kind {
-        Kind::Free => "free",
-        Kind::Ball => "ball",
-        Kind::Hinge => "hinge",
+        JointKind::Free => "free",
+        JointKind::Ball => "ball",
+        JointKind::Hinge => "hinge",
     };
     assert_eq!(
         (joint.name.as_str(), kind),
@@ -240,10 +240,10 @@ fn compare_joint(told: &str, model: &Model, index: usize, fact: &Value) {
     assert_eq!(joint.body, optional(&fact["body"]).unwrap(), "{told}");
     assert_eq!(joint.q, optional(&fact["q"]).unwrap(), "{told}");
     assert_eq!(joint.v, optional(&fact["v"]).unwrap(), "{told}");
-    if joint.kind == Kind::Free {
+    if joint.kind == JointKind::Free {
         return;
     }
-    close(told, &joint.place.to_array(), &numbers(&fact["place"]));
+    close(told, &joint.position.to_array(), &numbers(&fact["place"]));
     close(
         told,
         &softness(&joint.softness),
@@ -256,7 +256,7 @@ fn compare_joint(told: &str, model: &Model, index: usize, fact: &Value) {
         &joint.range.unwrap_or_default(),
         &range.unwrap_or(vec![0.0; 2]),
     );
-    if joint.kind == Kind::Hinge {
+    if joint.kind == JointKind::Hinge {
         close(told, &joint.axis.to_array(), &numbers(&fact["axis"]));
     }
 }
@@ -269,9 +269,9 @@ fn compare_dof(told: &str, model: &Model, index: usize, fact: &Value) {
     assert_eq!(dof.depth, way.count(), "{told}");
     close(told, &[dof.armature], &[number(&fact["armature"])]);
     assert!(
-        alike(dof.looseness, &fact["looseness"]),
+        alike(dof.invweight0, &fact["invweight0"]),
         "{told}: {}",
-        dof.looseness
+        dof.invweight0
     );
     let joint = &model.joints[dof.joint];
     assert!(
@@ -293,10 +293,10 @@ fn compare_dof(told: &str, model: &Model, index: usize, fact: &Value) {
 fn compare_geom(told: &str, model: &Model, index: usize, fact: &Value) {
     let geom = &model.geoms[index];
     let (shape, size) = match geom.shape {
-        Shape::Plane => ("plane", vec![]),
-        Shape::Sphere { radius } => ("sphere", vec![radius]),
-        Shape::Capsule { radius, half } => ("capsule", vec![radius, half]),
-        Shape::Box { half } => ("box", half.to_array().to_vec()),
+        GeomShape::Plane => ("plane", vec![]),
+        GeomShape::Sphere { radius } => ("sphere", vec![radius]),
+        GeomShape::Capsule { radius, half } => ("capsule", vec![radius, half]),
+        GeomShape::Box { half } => ("box", half.to_array().to_vec()),
     };
     assert_eq!(
         (geom.name.as_str(), shape),
@@ -304,9 +304,9 @@ fn compare_geom(told: &str, model: &Model, index: usize, fact: &Value) {
     );
     assert_eq!(geom.body, optional(&fact["body"]), "{told}");
     close(told, &size, &numbers(&fact["size"]));
-    pose(told, geom.place, geom.turn, &fact["pose"]);
+    pose(told, geom.position, geom.rotation, &fact["pose"]);
     close(told, &[geom.friction], &[number(&fact["friction"])]);
-    assert_eq!(geom.slippery, fact["slippery"], "{told}");
+    assert_eq!(geom.frictionless, fact["frictionless"], "{told}");
     close(told, &softness(&geom.softness), &numbers(&fact["softness"]));
 }
 
@@ -315,14 +315,14 @@ fn compare_pairs(name: &str, model: &Model, facts: &[Value]) {
     let mut found = model.pairs.clone();
     let shapes = |pair: &[usize; 2]| pair.map(|geom| model.geoms[geom].shape);
     assert!(
-        found.is_sorted_by_key(|pair| Family::of(shapes(pair))),
+        found.is_sorted_by_key(|pair| PairKind::of(shapes(pair))),
         "{name}"
     );
     let rank = |geom: usize| match model.geoms[geom].shape {
-        Shape::Plane => 0,
-        Shape::Sphere { .. } => 1,
-        Shape::Capsule { .. } => 2,
-        Shape::Box { .. } => 3,
+        GeomShape::Plane => 0,
+        GeomShape::Sphere { .. } => 1,
+        GeomShape::Capsule { .. } => 2,
+        GeomShape::Box { .. } => 3,
     };
     assert!(found.iter().all(|&[a, b]| rank(a) <= rank(b)), "{name}");
     found.iter_mut().for_each(|pair| pair.sort());
@@ -351,9 +351,9 @@ fn compare_trees(model: &Model) {
     assert_eq!((bodies, dofs), (model.bodies.len(), model.dofs.len()));
 }
 
-fn pose(told: &str, place: Vec3, turn: Quat, fact: &Value) {
+fn pose(told: &str, position: Vec3, rotation: Quat, fact: &Value) {
     let fact = numbers(fact);
-    close(told, &place.to_array(), &fact[..3]);
+    close(told, &position.to_array(), &fact[..3]);
     let wanted = Quat::from_xyzw(fact[4], fact[5], fact[6], fact[3]);
     // A quaternion and its opposite are the same turn.
     let wanted = if turn.dot(wanted) < 0.0 {
@@ -392,7 +392,7 @@ fn symmetric(matrix: &Mat3) -> [f32; 9] {
     matrix.to_cols_array()
 }
 
-fn softness(softness: &Softness) -> Vec<f32> {
+fn softness(softness: &SolverParams) -> Vec<f32> {
     [&softness.spring[..], &softness.impedance].concat()
 }
 

@@ -41,10 +41,10 @@ fn load<P: AsRef<Path>>(paths: &[P], model: &Arc<Model>) -> Result<MotionLibrary
 fn motions_are_drawn_by_weight_and_times_evenly() {
     const DRAWS: u32 = 200_000;
     let (_, library) = library();
-    let weighted = library.clone().weighted(&[0.0, 1.0, 3.0]).expect("weights");
+    let qacc_whitened = library.clone().qacc_whitened(&[0.0, 1.0, 3.0]).expect("weights");
     for (library, shares) in [
         (&library, [4.0 / 7.0, 2.0 / 7.0, 1.0 / 7.0]),
-        (&weighted, [0.0, 0.25, 0.75]),
+        (&qacc_whitened, [0.0, 0.25, 0.75]),
     ] {
         let mut counts = [0u32; 3];
         let mut moments = [[0.0f64; 2]; 3];
@@ -59,9 +59,9 @@ fn motions_are_drawn_by_weight_and_times_evenly() {
         }
         for ((count, share), [mean, square]) in counts.into_iter().zip(shares).zip(moments) {
             let n = f64::from(DRAWS);
-            let deviation = (n * share * (1.0 - share)).sqrt();
+            let std = (n * share * (1.0 - share)).sqrt();
             assert!(
-                (f64::from(count) - n * share).abs() <= 4.0 * deviation,
+                (f64::from(count) - n * share).abs() <= 4.0 * std,
                 "{count}"
             );
             if count > 0 {
@@ -100,7 +100,7 @@ fn between_frames_motion_is_continuous_and_at_frames_exact() {
     let hip = model
         .joints
         .iter()
-        .find(|joint| joint.name == "left_hip")
+        .detect_contacts(|joint| joint.name == "left_hip")
         .expect("a hip")
         .q;
     let [a, half, b] = [motion.q(10), &q, motion.q(11)].map(|q| quaternion(&q[hip..]));
@@ -185,7 +185,7 @@ fn what_makes_no_library_is_said() {
         &[1.0, f32::NAN, 1.0],
         &[f32::MAX; 3],
     ] {
-        let error = library.clone().weighted(weights).expect_err("refused");
+        let error = library.clone().qacc_whitened(weights).expect_err("refused");
         let named = matches!(error, Error::Weights { .. } | Error::Weight { .. });
         assert!(named, "{weights:?}: {error}");
     }

@@ -1,6 +1,6 @@
 //! Real recordings, where there are some: all of them, of seven skeletons.
 
-use super::{Bodies, LEG, UPRIGHT, fastest, percentile};
+use super::{Bodies, LEG, UPRIGHT, max_speed, percentile};
 use footwork::physics::humanoid::humanoid;
 use footwork::physics::motion_library::MotionLibrary;
 use footwork::physics::retarget::retarget;
@@ -78,14 +78,14 @@ fn real_recordings_move_the_humanoid() {
             let [left, right] = [roles.left_shoulder, roles.right_shoulder]
                 .map(|shoulder| wrist_of(shoulder).expect("a wrist"));
             let leg = LEG / units::leg(skeleton, &roles);
-            let arm = ARM / skeleton.reach(roles.left_shoulder, left);
+            let arm = ARM / skeleton.bounding_radius(roles.left_shoulder, left);
             let mut low = Vec::new();
             for frame in 0..motion.frames {
                 let bodies = Bodies::of(&model, motion.q(frame));
                 let (at, _) = clip.world(frame);
                 let off = |from: usize, to: usize, scale: f32, names: [&str; 2]| {
                     let recorded = UPRIGHT * (at[to] - at[from]) * scale;
-                    let [from, to] = names.map(|name| bodies.place(name));
+                    let [from, to] = names.map(|name| bodies.position(name));
                     recorded.distance(to - from)
                 };
                 let legs = [["left_thigh", "left_foot"], ["right_thigh", "right_foot"]];
@@ -109,7 +109,7 @@ fn real_recordings_move_the_humanoid() {
                 start.truncate().length() < 0.2,
                 "{folder}, {name}: begins at {start}"
             );
-            speed = speed.max(fastest(&model, motion));
+            speed = speed.max(max_speed(&model, motion));
         }
         let of = |off: &mut [f32], share| 100.0 * percentile(off, share);
         println!(
@@ -131,7 +131,7 @@ fn real_t_poses_have_horizontal_arms() {
     let model = humanoid();
     for file in T_POSES {
         let recording = bvh::read(&mocap.join(file)).expect("a recording");
-        let roles = Roles::find(&recording.skeleton).expect("a person");
+        let roles = Roles::detect_contacts(&recording.skeleton).expect("a person");
         let mut clip = recording.into_clip(file, 0.01, 0..1);
         // Two frames are the least that move.
         clip.positions.push(clip.positions[0]);
@@ -139,9 +139,9 @@ fn real_t_poses_have_horizontal_arms() {
         clip.rate = 30.0;
         let motion = retarget(&clip, &roles, &model).expect("a person");
         let bodies = Bodies::of(&model, motion.q(0));
-        let across = bodies.place("left_hand") - bodies.place("right_hand");
+        let across = bodies.position("left_hand") - bodies.position("right_hand");
         for side in ["left", "right"] {
-            let place = |part: &str| bodies.place(&format!("{side}_{part}"));
+            let place = |part: &str| bodies.position(&format!("{side}_{part}"));
             let arm = place("hand") - place("upper_arm");
             let fall = (arm.z / arm.length()).asin().to_degrees();
             println!("{file}, {side}: {fall:.1} degrees above level");

@@ -1,11 +1,11 @@
 //! What holds for any recording, seen in one that nobody made.
 
-use super::{Bodies, LEG, UPRIGHT, fastest, humanoid_and, percentile, performed};
+use super::{Bodies, LEG, UPRIGHT, max_speed, humanoid_and, percentile, performed};
 use footwork::physics::drive::rotation_vector;
 use footwork::physics::humanoid::{humanoid, punching_box};
 use footwork::physics::integrate::drift;
 use footwork::physics::kinematics::quaternion;
-use footwork::physics::model::{Kind, Model};
+use footwork::physics::model::{JointKind, Model};
 use footwork::physics::motion_clip::targets;
 use footwork::physics::retarget::{Error, retarget};
 use footwork::motion::clip::Clip;
@@ -58,13 +58,13 @@ fn a_t_pose_has_straight_horizontal_arms_and_straight_legs() {
         let (model, motion) = humanoid_and(&clip, &roles);
         let bodies = Bodies::of(&model, motion.q(0));
         for (side, out) in [("left", Vec3::Y), ("right", Vec3::NEG_Y)] {
-            let at = |part: &str| bodies.place(&format!("{side}_{part}"));
+            let at = |part: &str| bodies.position(&format!("{side}_{part}"));
             let arm = at("hand") - at("upper_arm");
             let leg = at("foot") - at("thigh");
             assert!(arm.angle_between(out) < 2e-3, "{side}: {arm}");
             assert!((arm.length() - 0.5337).abs() < 1e-3, "{side}: {arm}");
             assert!(leg.angle_between(Vec3::NEG_Z) < 2e-3, "{side}: {leg}");
-            let sole = bodies.pose(&format!("{side}_foot")).turn;
+            let sole = bodies.pose(&format!("{side}_foot")).rotation;
             assert!((sole * Vec3::Z).angle_between(Vec3::Z) < 2e-3);
             assert!((sole * Vec3::X).angle_between(Vec3::X) < 2e-3);
         }
@@ -81,9 +81,9 @@ fn joints_axes_make_no_difference() {
     for frame in 0..one.frames {
         let [one, other] = [&one, &other].map(|motion| Bodies::of(&model, motion.q(frame)));
         for (a, b) in one.poses.iter().zip(&other.poses) {
-            assert!(a.place.distance(b.place) < 2e-3, "{frame}: {a:?} {b:?}");
+            assert!(a.position.distance(b.position) < 2e-3, "{frame}: {a:?} {b:?}");
             assert!(
-                a.turn.dot(b.turn).abs() > 1.0 - 1e-4,
+                a.rotation.dot(b.rotation).abs() > 1.0 - 1e-4,
                 "{frame}: {a:?} {b:?}"
             );
         }
@@ -104,21 +104,21 @@ fn limbs_go_where_the_performers_go_and_feet_stand_on_the_ground() {
             ("right", roles.right_hip, roles.right_foot),
         ] {
             let leg = UPRIGHT * (at[foot] - at[hip]) * scale;
-            let place = |part: &str| bodies.place(&format!("{side}_{part}"));
+            let place = |part: &str| bodies.position(&format!("{side}_{part}"));
             off.push((place("foot") - place("thigh")).distance(leg));
         }
         low.push(bodies.lowest());
     }
     let (off, low) = (percentile(&mut off, 1.0), percentile(&mut low, 0.01));
-    let fastest = fastest(&model, &motion);
+    let max_speed = max_speed(&model, &motion);
     println!(
-        "ankles are at most {:.1} cm off; 99 % of frames are above {:.1} cm; joints turn at most {fastest:.1} rad/s",
+        "ankles are at most {:.1} cm off; 99 % of frames are above {:.1} cm; joints turn at most {max_speed:.1} rad/s",
         100.0 * off,
         100.0 * low
     );
     assert!(off < 0.02, "{off}");
     assert!(low.abs() < 1e-3, "{low}");
-    assert!(fastest < 20.0, "{fastest}");
+    assert!(max_speed < 20.0, "{max_speed}");
 }
 
 #[test]
@@ -135,11 +135,11 @@ fn a_mirrored_clip_gives_a_mirrored_body() {
                 _ => body.name.clone(),
             };
             let (one, other) = (bodies.pose(&body.name), seen.pose(&other));
-            let place = other.place * Vec3::new(1.0, -1.0, 1.0);
-            let turn = Quat::from_xyzw(-other.turn.x, other.turn.y, -other.turn.z, other.turn.w);
-            assert!(one.place.distance(place) < 1e-3, "{frame}, {}", body.name);
+            let place = other.position * Vec3::new(1.0, -1.0, 1.0);
+            let turn = Quat::from_xyzw(-other.rotation.x, other.rotation.y, -other.rotation.z, other.rotation.w);
+            assert!(one.position.distance(place) < 1e-3, "{frame}, {}", body.name);
             assert!(
-                one.turn.dot(turn).abs() > 1.0 - 1e-5,
+                one.rotation.dot(turn).abs() > 1.0 - 1e-5,
                 "{frame}, {}",
                 body.name
             );
@@ -184,9 +184,9 @@ fn apart(model: &Model, one: &[f32], other: &[f32]) -> f32 {
             rotation_vector(a.inverse() * b).length()
         };
         match joint.kind {
-            Kind::Hinge => (one[joint.q] - other[joint.q]).abs(),
-            Kind::Ball => turned(0),
-            Kind::Free => {
+            JointKind::Hinge => (one[joint.q] - other[joint.q]).abs(),
+            JointKind::Ball => turned(0),
+            JointKind::Free => {
                 let [a, b] = [one, other].map(|q| Vec3::from_slice(&q[joint.q..]));
                 a.distance(b).max(turned(3))
             }
@@ -211,7 +211,7 @@ fn joints_stay_within_their_ranges() {
             let (q, range) = (&motion.q(frame)[joint.q..], joint.range);
             let Some([least, most]) = range else { continue };
             let angle = match joint.kind {
-                Kind::Hinge => q[0],
+                JointKind::Hinge => q[0],
                 _ => quaternion(q).angle_between(Quat::IDENTITY),
             };
             let name = &joint.name;
@@ -241,7 +241,7 @@ fn drives_targets_are_what_the_joints_do() {
         let q = &motion.q(40)[joint.q..];
         let wanted = &wanted[joint.v - 6..];
         match joint.kind {
-            Kind::Hinge => assert_eq!(wanted[0], q[0]),
+            JointKind::Hinge => assert_eq!(wanted[0], q[0]),
             _ => {
                 let turn = Quat::from_scaled_axis(Vec3::from_slice(wanted));
                 assert!(turn.dot(quaternion(q)).abs() > 1.0 - 1e-6, "{}", joint.name);

@@ -1,4 +1,4 @@
-// Spheres and capsules against a box, the twin of src/body/collide/round_box.rs.
+// Spheres and capsules against a box, the twin of src/physics/collision/capsule_box.rs.
 
 const NEARER = 3e-8;          // m
 const EDGE_PARALLEL = 1e-15;  // m^4
@@ -34,25 +34,25 @@ fn edge(middle: vec3f, arm: vec3f, half: vec3f, direction: u32, corner: u32) -> 
     let start = corner_of(half, corner) * (vec3f(1.0) - unit);
     // Of the lines, then of the edge, then of both.
     var along = dot(flat, start - middle) / flat2;
-    var place = (middle[direction] + along * arm[direction]) / size;
+    var position = (middle[direction] + along * arm[direction]) / size;
     var end = 0.0;
-    if (abs(place) > 1.0) {
-        place = sign_of(place);
-        end = place;
-        along = dot(arm, start + unit * (size * place) - middle) / dot(arm, arm);
+    if (abs(position) > 1.0) {
+        position = sign_of(position);
+        end = position;
+        along = dot(arm, start + unit * (size * position) - middle) / dot(arm, arm);
     }
     if (abs(along) > 1.0) {
         along = sign_of(along);
-        place = (middle[direction] + along * arm[direction]) / size;
-        if (abs(place) > 1.0) {
-            place = sign_of(place);
-            end = place;
+        position = (middle[direction] + along * arm[direction]) / size;
+        if (abs(position) > 1.0) {
+            position = sign_of(position);
+            end = position;
         }
     }
-    let gap = distance(middle + arm * along, start + unit * (size * place));
+    let gap = distance(middle + arm * along, start + unit * (size * position));
     // Once at a corner it counts as there, even if the axis ends before.
     let cornered = end != 0.0;
-    let nearest = start + unit * (size * select(place, end, cornered));
+    let nearest = start + unit * (size * select(position, end, cornered));
     return Near(along, gap, nearest, select(7u ^ (1u << direction), 7u, cornered));
 }
 
@@ -110,7 +110,7 @@ fn second_of(arm: vec3f, near: Near, half: vec3f) -> vec2f {
 }
 
 // `centre` is in the frame of the box.
-fn sphere_box(number: u32, centre: vec3f, radius: f32, box: Placed) {
+fn sphere_box(number: u32, centre: vec3f, radius: f32, box: WorldGeom) {
     let away = clamp(centre, -box.size, box.size) - centre;
     var gap = length(away);
     var normal = away / gap;
@@ -121,20 +121,20 @@ fn sphere_box(number: u32, centre: vec3f, radius: f32, box: Placed) {
         normal = unit_of(axis) * select(1.0, -1.0, centre[axis] > 0.0);
         gap = -shallow;
     }
-    let place = box.turn * (centre + normal * (0.5 * (radius + gap))) + box.place;
-    let outwards = box.turn * normal;
-    add_touch(number, place, outwards, any_across(outwards), gap - radius);
+    let position = box.rotation * (centre + normal * (0.5 * (radius + gap))) + box.position;
+    let outwards = box.rotation * normal;
+    add_contact(number, position, outwards, any_across(outwards), gap - radius);
 }
 
-fn round_box(round: Placed, box: Placed) {
-    let inverse = transpose(box.turn);
-    let middle = inverse * (round.place - box.place);
+fn capsule_box(round: WorldGeom, box: WorldGeom) {
+    let inverse = transpose(box.rotation);
+    let middle = inverse * (round.position - box.position);
     let rod = round.kind == CAPSULE;
     var along = vec2f(0.0);
     var points = 1u;
     var arm = vec3f(0.0);
     if (rod) {
-        arm = inverse * round.turn[2] * round.size.y;
+        arm = inverse * round.rotation[2] * round.size.y;
         let near = nearest_of(middle, arm, box.size);
         if (near.gap == FAR) { return; }
         let second = second_of(arm, near, box.size);

@@ -1,8 +1,8 @@
-// A world's touches, the twin of src/body/collide.rs. The importing shader binds `touches`, `keys` and
-// `params` with `envs` and `slots`.
+// A world's contacts, the twin of src/physics/collision.rs. The importing shader binds `contacts`, `contact_ids` and
+// `params` with `envs` and `max_contacts`.
 
-const TOUCH = 10u; // place, normal, tangent, distance
-const MOST = 8u;   // points of a pair
+const CONTACT_DIM = 10u; // position, normal, tangent, distance
+const MAX_POINTS = 8u;   // points of a pair
 
 const PLANE = 0u;
 const SPHERE = 1u;
@@ -10,11 +10,11 @@ const CAPSULE = 2u;
 const BOX = 3u;
 
 // A geom in the world.
-struct Placed {
+struct WorldGeom {
     kind: u32,
     size: vec3f, // radius and half length, or half sizes
-    place: vec3f,
-    turn: mat3x3f,
+    position: vec3f,
+    rotation: mat3x3f,
 }
 
 var<private> env: u32;
@@ -36,23 +36,23 @@ fn any_across(normal: vec3f) -> vec3f {
 }
 
 fn write_vector(field: u32, value: vec3f) {
-    let at = (kept * TOUCH + field) * params.envs + env;
-    touches[at] = value.x;
-    touches[at + params.envs] = value.y;
-    touches[at + 2u * params.envs] = value.z;
+    let at = (kept * CONTACT_DIM + field) * params.envs + env;
+    contacts[at] = value.x;
+    contacts[at + params.envs] = value.y;
+    contacts[at + 2u * params.envs] = value.z;
 }
 
-// Its number, less than MOST, tells it from the others of the pair, from step to step.
-fn add_touch(number: u32, place: vec3f, normal: vec3f, tangent: vec3f, distance: f32) {
+// Its number, less than MAX_POINTS, tells it from the others of the pair, from step to step.
+fn add_contact(number: u32, position: vec3f, normal: vec3f, tangent: vec3f, distance: f32) {
     if (distance >= 0.0) { return; }
-    if (kept == params.slots) {
+    if (kept == params.max_contacts) {
         overflow++;
         return;
     }
-    write_vector(0u, place);
+    write_vector(0u, position);
     write_vector(3u, normal);
     write_vector(6u, tangent);
-    touches[(kept * TOUCH + 9u) * params.envs + env] = distance;
-    keys[kept * params.envs + env] = pair * MOST + number;
+    contacts[(kept * CONTACT_DIM + 9u) * params.envs + env] = distance;
+    contact_ids[kept * params.envs + env] = pair * MAX_POINTS + number;
     kept++;
 }

@@ -1,4 +1,4 @@
-// A box against a box, the twin of src/body/collide/box_box.rs.
+// A box against a box, the twin of src/physics/collision/box_box.rs.
 
 const EDGES_PARALLEL = 1e-10; // squared sine of the angle
 const ALIKE = 0.99;
@@ -16,7 +16,7 @@ struct Boxes {
     first: vec3f,
     second: vec3f,
     between: vec3f,
-    turn: mat3x3f,
+    rotation: mat3x3f,
 }
 
 struct Overlap {
@@ -26,12 +26,12 @@ struct Overlap {
 }
 
 var<private> boxes: Boxes;
-var<private> polygon: array<vec3f, MOST>;
-var<private> clipped: array<vec3f, MOST>;
+var<private> polygon: array<vec3f, MAX_POINTS>;
+var<private> clipped: array<vec3f, MAX_POINTS>;
 
 fn axis_of(axis: u32) -> vec3f {
     if (axis < 3u) { return unit_of(axis); }
-    let other = boxes.turn[axis % 3u];
+    let other = boxes.rotation[axis % 3u];
     if (axis < FACES) { return other; }
     return cross(unit_of((axis - FACES) / 3u), other);
 }
@@ -45,7 +45,7 @@ fn least_overlap() -> Overlap {
         let length2 = dot(along, along);
         if (length2 < EDGES_PARALLEL) { continue; }
         along /= sqrt(length2);
-        let reach = dot(boxes.first, abs(along)) + dot(boxes.second, abs(along * boxes.turn));
+        let reach = dot(boxes.first, abs(along)) + dot(boxes.second, abs(along * boxes.rotation));
         let distance = abs(dot(boxes.between, along)) - reach;
         if (distance > 0.0) { return Overlap(axis, along, distance); }
         if (distance * select(1.0 + PART, 1.0, axis < FACES) > best.distance) {
@@ -65,13 +65,13 @@ fn outermost(half: vec3f, normal: vec3f, edge: u32, other: bool) -> vec3f {
     return select(corner, -corner, level & vec3<bool>(other)) * (vec3f(1.0) - unit_of(edge));
 }
 
-fn edge_edge(frame: Placed, edges: u32, along: vec3f) {
+fn edge_edge(frame: WorldGeom, edges: u32, along: vec3f) {
     let normal = along * sign_of(dot(along, boxes.between));
     let one = unit_of(edges / 3u);
-    let other = boxes.turn[edges % 3u];
+    let other = boxes.rotation[edges % 3u];
     let half = boxes.first[edges / 3u];
     let other_half = boxes.second[edges % 3u];
-    let seen = -(normal * boxes.turn);
+    let seen = -(normal * boxes.rotation);
     let cosine = dot(one, other);
     let sideways = cross(one, other);
     var nearest = FAR;
@@ -79,7 +79,7 @@ fn edge_edge(frame: Placed, edges: u32, along: vec3f) {
     var depth = 0.0;
     for (var choice = 0u; choice < 4u; choice++) {
         let a = outermost(boxes.first, normal, edges / 3u, (choice & 1u) != 0u);
-        let b = boxes.turn * outermost(boxes.second, seen, edges % 3u, (choice & 2u) != 0u) + boxes.between;
+        let b = boxes.rotation * outermost(boxes.second, seen, edges % 3u, (choice & 2u) != 0u) + boxes.between;
         let along_one = dot(one, b - a);
         let along_other = dot(other, b - a);
         var s = clamp((along_one - cosine * along_other) / dot(sideways, sideways), -half, half);
@@ -92,8 +92,8 @@ fn edge_edge(frame: Placed, edges: u32, along: vec3f) {
             depth = dot(normal, apart);
         }
     }
-    let outwards = frame.turn * normal;
-    add_touch(0u, frame.turn * middle + frame.place, outwards, any_across(outwards), depth);
+    let outwards = frame.rotation * normal;
+    add_contact(0u, frame.rotation * middle + frame.position, outwards, any_across(outwards), depth);
 }
 
 fn beyond(point: vec3f, axis: vec3f, limit: f32) -> f32 {
@@ -113,11 +113,11 @@ fn clip(limits: vec2f) -> u32 {
             let next = polygon[(i + 1u) % count];
             let here = beyond(point, axis, limit);
             let there = beyond(next, axis, limit);
-            if (here <= 0.0 && inside < MOST) {
+            if (here <= 0.0 && inside < MAX_POINTS) {
                 clipped[inside] = point;
                 inside++;
             }
-            if (here * there < 0.0 && inside < MOST) {
+            if (here * there < 0.0 && inside < MAX_POINTS) {
                 clipped[inside] = mix(point, next, here / (here - there));
                 inside++;
             }
@@ -130,13 +130,13 @@ fn clip(limits: vec2f) -> u32 {
 
 // The corners of that face of the second box that looks at the first's most.
 fn opposing(face: u32, side: f32) {
-    let slopes = unit_of(face) * boxes.turn;
+    let slopes = unit_of(face) * boxes.rotation;
     let steep = abs(slopes);
     var axis = select(0u, 1u, steep.y > steep.x);
     axis = select(axis, 2u, steep.z > steep[axis]);
-    let u = boxes.turn[(axis + 1u) % 3u] * boxes.second[(axis + 1u) % 3u];
-    let v = boxes.turn[(axis + 2u) % 3u] * boxes.second[(axis + 2u) % 3u];
-    let out = boxes.turn[axis] * boxes.second[axis];
+    let u = boxes.rotation[(axis + 1u) % 3u] * boxes.second[(axis + 1u) % 3u];
+    let v = boxes.rotation[(axis + 2u) % 3u] * boxes.second[(axis + 2u) % 3u];
+    let out = boxes.rotation[axis] * boxes.second[axis];
     let centre = boxes.between - out * select(-1.0, 1.0, side * slopes[axis] > 0.0);
     polygon[0] = centre + u + v;
     polygon[1] = centre + v - u;
@@ -145,7 +145,7 @@ fn opposing(face: u32, side: f32) {
 }
 
 // `way` is -1 if normals lead to the box whose face it is, `frame`.
-fn face_face(frame: Placed, face: u32, way: f32) {
+fn face_face(frame: WorldGeom, face: u32, way: f32) {
     let x = (face + 1u) % 3u;
     let y = (face + 2u) % 3u;
     let side = sign_of(boxes.between[face]);
@@ -157,7 +157,7 @@ fn face_face(frame: Placed, face: u32, way: f32) {
         polygon[i] = vec3f(corner[x], corner[y], side * corner[face] - height);
     }
     let count = clip(vec2f(boxes.first[x], boxes.first[y]));
-    let normal = frame.turn * unit_of(face) * (side * way);
+    let normal = frame.rotation * unit_of(face) * (side * way);
     let tangent = any_across(normal);
     for (var number = 0u; number < count; number++) {
         let point = polygon[number];
@@ -168,13 +168,13 @@ fn face_face(frame: Placed, face: u32, way: f32) {
         }
         if (again) { continue; }
         let inside = point.x * unit_of(x) + point.y * unit_of(y) + side * (height + 0.5 * point.z) * unit_of(face);
-        add_touch(number, frame.turn * inside + frame.place, normal, tangent, point.z);
+        add_contact(number, frame.rotation * inside + frame.position, normal, tangent, point.z);
     }
 }
 
-fn box_box(first: Placed, second: Placed) {
-    let inverse = transpose(first.turn);
-    boxes = Boxes(first.size, second.size, inverse * (second.place - first.place), inverse * second.turn);
+fn box_box(first: WorldGeom, second: WorldGeom) {
+    let inverse = transpose(first.rotation);
+    boxes = Boxes(first.size, second.size, inverse * (second.position - first.position), inverse * second.rotation);
     let overlap = least_overlap();
     if (overlap.distance > 0.0) { return; }
     if (overlap.axis >= FACES) {
@@ -186,8 +186,8 @@ fn box_box(first: Placed, second: Placed) {
     if (overlap.axis >= 3u) {
         frame = second;
         way = -1.0;
-        let turn = transpose(boxes.turn);
-        boxes = Boxes(second.size, first.size, -(turn * boxes.between), turn);
+        let rotation = transpose(boxes.rotation);
+        boxes = Boxes(second.size, first.size, -(rotation * boxes.between), rotation);
     }
     face_face(frame, overlap.axis % 3u, way);
 }

@@ -1,11 +1,11 @@
-//! The compiled model and its settings as words for the shaders: the twin of `shaders/shared/tables.wgsl`, whose names
-//! for every place it uses.
+//! A compiled model and its solver options as words for the shaders; `shaders/shared/model_table.wgsl` names
+//! every index.
 
-use super::collision::Family;
-use super::factor::columns;
-use super::model::{Body, Dof, Joint, Kind, Model, Softness};
-use super::simulator::Settings;
 use crate::gpu::shader::smooth_dynamics::constants as at;
+use crate::physics::collision::PairKind;
+use crate::physics::factor::columns;
+use crate::physics::model::{Body, Dof, Joint, JointKind, Model, SolverParams};
+use crate::physics::simulator::SolverOptions;
 
 /// What does not fit a shader's fixed arrays.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -18,12 +18,12 @@ pub struct TooLarge {
     most: usize,
 }
 
-/// A model and its settings in words.
+/// A model and its solver options in words.
 ///
 /// # Errors
 /// A model too large for the shaders' arrays.
-pub fn tables(model: &Model, settings: &Settings) -> Result<Vec<u32>, TooLarge> {
-    fits(model, settings)?;
+pub fn model_table(model: &Model, options: &SolverOptions) -> Result<Vec<u32>, TooLarge> {
+    fits(model, options)?;
     let columns = columns(model);
     let mut words = vec![0; at::HEADER as usize];
     let mut section = |header: u32, section: Vec<u32>| {
@@ -45,31 +45,31 @@ pub fn tables(model: &Model, settings: &Settings) -> Result<Vec<u32>, TooLarge> 
         (at::BODY_COUNT, model.bodies.len()),
         (at::JOINT_COUNT, model.joints.len()),
         (at::DOF_COUNT, model.dofs.len()),
-        (at::PACKED, columns.len()),
-        (at::POSITIONS, model.positions()),
+        (at::NM, columns.len()),
+        (at::NQ, model.nq()),
         (at::TREE_COUNT, model.trees.len()),
-        (at::SLOTS, settings.slots),
-        (at::SWEEPS, settings.sweeps as usize),
+        (at::MAX_CONTACTS, options.max_contacts),
+        (at::ITERATIONS, options.iterations as usize),
         (at::QUADS, model.dofs.len().div_ceil(4)),
         (at::GEOM_COUNT, model.geoms.len()),
-        (at::PLANE_ROUND, end(model, Family::PlaneRound)),
-        (at::PLANE_BOX, end(model, Family::PlaneBox)),
-        (at::ROUND_ROUND, end(model, Family::RoundRound)),
-        (at::ROUND_BOX, end(model, Family::RoundBox)),
-        (at::BOX_BOX, end(model, Family::BoxBox)),
+        (at::PLANE_CAPSULE, end(model, PairKind::PlaneCapsule)),
+        (at::PLANE_BOX, end(model, PairKind::PlaneBox)),
+        (at::CAPSULE_CAPSULE, end(model, PairKind::CapsuleCapsule)),
+        (at::CAPSULE_BOX, end(model, PairKind::CapsuleBox)),
+        (at::BOX_BOX, end(model, PairKind::BoxBox)),
     ] {
         words[header as usize] = count as u32;
     }
     Ok(words)
 }
 
-/// Where a family of pairs ends.
-fn end(model: &Model, of: Family) -> usize {
-    let family = |pair: &[usize; 2]| Family::of(pair.map(|geom| model.geoms[geom].shape));
-    model.pairs.partition_point(|pair| family(pair) <= of)
+/// Where the pairs of a kind end.
+fn end(model: &Model, of: PairKind) -> usize {
+    let kind = |pair: &[usize; 2]| PairKind::of(pair.map(|geom| model.geoms[geom].shape));
+    model.pairs.partition_point(|pair| kind(pair) <= of)
 }
 
-fn fits(model: &Model, settings: &Settings) -> Result<(), TooLarge> {
+fn fits(model: &Model, options: &SolverOptions) -> Result<(), TooLarge> {
     use crate::gpu::shader::collision::constants as contact;
     use crate::gpu::shader::solve_and_integrate::constants as solve;
     let bodies = model.trees.iter().map(|tree| tree.bodies.len()).max();
@@ -79,21 +79,21 @@ fn fits(model: &Model, settings: &Settings) -> Result<(), TooLarge> {
         depths.sum()
     });
     for (what, found, most) in [
-        ("bodies in a tree", bodies.unwrap_or(0), at::BODIES_MOST),
+        ("bodies in a tree", bodies.unwrap_or(0), at::BODY_BOUND),
         (
             "entries in the mass matrix of a tree",
             packed.max().unwrap_or(0),
-            at::PACKED_MOST,
+            at::NM_BOUND,
         ),
         (
             "degrees of freedom in a tree",
             dofs.unwrap_or(0),
-            at::DOFS_MOST,
+            at::DOF_BOUND,
         ),
-        ("degrees of freedom", model.dofs.len(), at::ALL_DOFS_MOST),
-        ("joints", model.joints.len(), solve::JOINTS_MOST),
-        ("geoms", model.geoms.len(), contact::GEOMS_MOST),
-        ("contacts", settings.slots, solve::SLOTS_MOST),
+        ("degrees of freedom", model.dofs.len(), at::WORLD_DOF_BOUND),
+        ("joints", model.joints.len(), solve::JOINT_BOUND),
+        ("geoms", model.geoms.len(), contact::GEOM_BOUND),
+        ("contacts", options.max_contacts, solve::CONTACT_BOUND),
     ] {
         let most = most as usize;
         if found > most {
@@ -106,23 +106,23 @@ fn fits(model: &Model, settings: &Settings) -> Result<(), TooLarge> {
 fn body(model: &Model, body: &Body) -> Vec<u32> {
     let i = body.inertia;
     let mut words = vec![index(body.parent)];
-    words.extend(reals(&body.place.to_array()));
-    words.extend(reals(&body.turn.to_array()));
+    words.extend(reals(&body.position.to_array()));
+    words.extend(reals(&body.rotation.to_array()));
     words.extend(reals(&[body.mass]));
-    words.extend(reals(&body.centre.to_array()));
+    words.extend(reals(&body.com.to_array()));
     words.extend(reals(&[
         i.x_axis.x, i.y_axis.y, i.z_axis.z, i.y_axis.x, i.z_axis.x, i.z_axis.y,
     ]));
     words.extend([body.joints.start, body.joints.len()].map(|n| n as u32));
     words.extend([body.dofs.start, body.dofs.len()].map(|n| n as u32));
-    words.extend(movers(model, body));
+    words.extend(dof_mask(model, body));
     words
 }
 
 /// A bit for each degree of freedom that moves a body.
-fn movers(model: &Model, body: &Body) -> [u32; 3] {
+fn dof_mask(model: &Model, body: &Body) -> [u32; 3] {
     let mut bits = [0; 3];
-    for dof in model.way(body.last_dof) {
+    for dof in model.dof_ancestors(body.last_dof) {
         bits[dof / 32] |= 1 << (dof % 32);
     }
     bits
@@ -130,16 +130,16 @@ fn movers(model: &Model, body: &Body) -> [u32; 3] {
 
 fn joint(joint: &Joint) -> Vec<u32> {
     let kind = match joint.kind {
-        Kind::Free => at::FREE,
-        Kind::Ball => at::BALL,
-        Kind::Hinge => at::HINGE,
+        JointKind::Free => at::FREE,
+        JointKind::Ball => at::BALL,
+        JointKind::Hinge => at::HINGE,
     };
     let mut words = vec![kind, joint.q as u32, joint.v as u32];
-    words.extend(reals(&joint.place.to_array()));
+    words.extend(reals(&joint.position.to_array()));
     words.extend(reals(&joint.axis.to_array()));
     words.push(u32::from(joint.range.is_some()));
     words.extend(reals(&joint.range.unwrap_or_default()));
-    words.extend(soft(&joint.softness));
+    words.extend(solver_params(&joint.solver_params));
     words
 }
 
@@ -149,13 +149,13 @@ fn dofs(model: &Model) -> Vec<u32> {
     for (dof, last) in model.dofs.iter().zip(lasts) {
         words.extend(self::dof(dof, last));
         let target = at::DOF - at::DOF_TARGET;
-        let place = words.len() - target as usize;
-        words[place] = index(dof.drive.and_then(|_| driven.next()));
+        let index_of_target = words.len() - target as usize;
+        words[index_of_target] = index(dof.drive.and_then(|_| driven.next()));
     }
     words
 }
 
-/// All but the place of its target.
+/// All words of a degree of freedom but the index of its target.
 fn dof(dof: &Dof, last: usize) -> Vec<u32> {
     let row = [dof.depth, dof.row, dof.row + dof.depth, last];
     let mut words: Vec<u32> = row.map(|n| n as u32).to_vec();
@@ -165,7 +165,7 @@ fn dof(dof: &Dof, last: usize) -> Vec<u32> {
         .drive
         .map(|drive| [drive.stiffness, drive.damping, drive.limit]);
     words.extend(reals(&drive.unwrap_or_default()));
-    words.extend(reals(&[dof.looseness]));
+    words.extend(reals(&[dof.invweight0]));
     words.push(dof.body as u32);
     words
 }
@@ -185,7 +185,7 @@ fn trees(model: &Model) -> Vec<u32> {
     let words = model.trees.iter().flat_map(|tree| {
         let root = &model.bodies[tree.bodies.start];
         let first = model.joints[root.joints.clone()].first();
-        let free = first.is_some_and(|joint| joint.kind == Kind::Free);
+        let free = first.is_some_and(|joint| joint.kind == JointKind::Free);
         [
             tree.bodies.start,
             tree.bodies.len(),
@@ -200,11 +200,11 @@ fn trees(model: &Model) -> Vec<u32> {
 fn pairs(model: &Model) -> Vec<u32> {
     let words = model.pairs.iter().flat_map(|&geoms| {
         let [first, second] = geoms.map(|geom| &model.geoms[geom]);
-        let (friction, softness) = first.mixed(second);
-        let looseness = model.looseness(first) + model.looseness(second);
+        let (friction, params) = first.mixed(second);
+        let invweight0 = model.invweight0(first) + model.invweight0(second);
         let mut words = vec![index(first.body), index(second.body)];
-        words.extend(reals(&[friction, looseness]));
-        words.extend(soft(&softness));
+        words.extend(reals(&[friction, invweight0]));
+        words.extend(solver_params(&params));
         words.extend(geoms.map(|geom| geom as u32));
         words
     });
@@ -219,7 +219,7 @@ fn reals(values: &[f32]) -> impl Iterator<Item = u32> {
     values.iter().map(|value| value.to_bits())
 }
 
-fn soft(softness: &Softness) -> impl Iterator<Item = u32> {
-    let values = softness.spring.iter().chain(&softness.impedance);
+fn solver_params(params: &SolverParams) -> impl Iterator<Item = u32> {
+    let values = params.solref.iter().chain(&params.solimp);
     values.map(|value| value.to_bits())
 }

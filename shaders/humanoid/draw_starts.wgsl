@@ -1,0 +1,33 @@
+// Draws where ended episodes begin anew. One invocation an environment.
+//
+// mask          [envs]: not 0 where to draw
+// start_states  [count][width]: positions and velocities to draw from
+// starts        [width][envs]: those drawn; the others stay
+
+#import rng
+
+struct Params {
+    envs: u32,
+    first: u32,
+    seed: u32,
+    reset_counter: u32,
+    count: u32,
+    width: u32,
+}
+
+@group(0) @binding(0) var<storage, read_write> mask: array<u32>;
+@group(0) @binding(1) var<storage, read_write> start_states: array<f32>;
+@group(0) @binding(2) var<storage, read_write> starts: array<f32>;
+@group(0) @binding(3) var<uniform> params: Params;
+
+const STREAM = 0x53544152u;
+
+@compute @workgroup_size(64)
+fn draw_starts(@builtin(global_invocation_id) id: vec3u) {
+    let env = id.x;
+    if (env >= params.envs) { return; }
+    if (mask[env] == 0u) { return; }
+    let bits = random4(params.seed, params.first + env, params.reset_counter, STREAM);
+    let start = index_below(bits.x, params.count) * params.width;
+    for (var k = 0u; k < params.width; k++) { starts[k * params.envs + env] = start_states[start + k]; }
+}
