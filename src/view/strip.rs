@@ -54,6 +54,15 @@ pub fn strips(
     Ok([replayed, driven])
 }
 
+/// Writes a film strip of the motion, replayed for its whole length.
+///
+/// # Errors
+/// The file cannot be written, or the GPU was lost.
+pub fn film_strip(gpu: &Gpu, model: &Arc<Model>, motion: &MotionClip, path: &Path) -> Result<()> {
+    let mut strip = Strip::new(gpu, model, motion);
+    strip.write(path, strip.replayed())
+}
+
 /// What one picture shows: a scene about a point, and how much there is to either side, m.
 struct Shot {
     scene: Scene,
