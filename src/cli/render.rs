@@ -11,6 +11,7 @@ use footwork::nn::Policy;
 use footwork::view::image_files::{self, Output};
 use footwork::view::debug_draw::scene;
 use footwork::view::playthrough::{Playthrough, PlaythroughContext};
+use footwork::view::strip::film_strip;
 use footwork::view::{Camera, RenderTarget, Renderer};
 use indicatif::ProgressIterator;
 use std::path::PathBuf;
@@ -24,7 +25,8 @@ const FOLLOW: f32 = 0.2;
 pub struct Render {
     /// A run's folder, whose last checkpoint is shown, or one of its checkpoints
     run: PathBuf,
-    /// FILE.png for one picture, FILE.gif for an animation, a folder's name for PNG frames
+    /// FILE.png for one picture (of a simulated body: a film strip), FILE.gif for an animation, a
+    /// folder's name for PNG frames
     #[arg(short, long, value_name = "FILE|DIR")]
     out: PathBuf,
     /// Write over what is there
@@ -128,13 +130,23 @@ impl Render {
     pub fn run(self) -> Result<()> {
         let output = self.check()?;
         let run = Run::open(&self.run, self.data.as_deref())?;
+        let policy = run.checkpoint(&run.path)?.policy;
         let gpu = Gpu::drawing()?;
+        if let Some((model, motion)) = run.task.motion(&policy, self.episode as u32) {
+            let Output::Png(path) = &output else {
+                let why = "a simulated body is drawn as a film strip: --out must end in .png";
+                return Err(Usage(why.into()).into());
+            };
+            film_strip(&gpu, &model, &motion, path)?;
+            println!("{}", path.display());
+            return Ok(());
+        }
         let locomotion = run.locomotion("render")?;
         let (matcher, task) = (locomotion.matcher.clone(), locomotion.task);
         let context = PlaythroughContext::new(matcher, task, self.blend.style());
         let mut film = Film {
             playthrough: Playthrough::new(&context, self.episode),
-            policy: run.checkpoint(&run.path)?.policy,
+            policy,
             context,
             camera: Camera {
                 yaw: self.yaw.to_radians(),

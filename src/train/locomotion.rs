@@ -8,7 +8,7 @@ use super::planner::plan;
 use super::rendered_frames::rendered_frames;
 use super::eval_report::{baseline_json, comparison, motion_quality};
 use super::evaluation::Evaluation;
-use super::task::{EvalOptions, EvalReport};
+use super::task::{EvalOptions, EvalReport, check_rollout};
 use crate::env::{EnvBatch, EnvSpec};
 use crate::env::locomotion::{EnvConfig, LEVELS, LocomotionTask};
 use crate::gpu::Device;
@@ -69,14 +69,7 @@ fn check_weights(weights: &Weights) -> Result<(), ConfigError> {
 /// # Errors
 /// A rollout is too long for it.
 pub fn rollout_spec(task: LocomotionTask, config: &Config) -> Result<EnvSpec, ConfigError> {
-    let (rollout, most) = (config.ppo.rollout_length, task.max_steps() as usize);
-    if rollout > most {
-        return Err(ConfigError::Value {
-            key: "ppo.rollout_length",
-            value: rollout.to_string(),
-            why: format!("a rollout may hold one truncation an environment: at most task.max_steps, {most}"),
-        });
-    }
+    check_rollout(config, task.max_steps())?;
     let envs = EnvConfig {
         task,
         envs: config.ppo.envs,

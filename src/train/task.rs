@@ -14,8 +14,11 @@ use super::locomotion::Locomotion;
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::nn::{ActorCritic, Policy};
+use crate::physics::model::Model;
+use crate::physics::motion_clip::MotionClip;
 use anyhow::Result;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A task by name, before its choices are made.
 pub struct TaskEntry {
@@ -58,6 +61,22 @@ impl TaskEntry {
         ActorCritic::new(&config.ppo.network, &spec.observation, spec.action)?;
         Ok(spec)
     }
+}
+
+/// Refuses rollouts that may hold more than the one truncation of an environment that there is room for.
+///
+/// # Errors
+/// [`ConfigError::Value`].
+pub fn check_rollout(config: &Config, max_steps: u32) -> Result<(), ConfigError> {
+    let rollout = config.ppo.rollout_length;
+    if rollout <= max_steps as usize {
+        return Ok(());
+    }
+    Err(ConfigError::Value {
+        key: "ppo.rollout_length",
+        value: rollout.to_string(),
+        why: format!("a rollout may hold one truncation of an environment: at most max_steps, {max_steps}"),
+    })
 }
 
 /// A task with its data, and what the user should know of how it was loaded.
@@ -116,8 +135,13 @@ pub trait Task: Send + Sync {
     #[cfg(feature = "report")]
     fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()>;
 
-    /// What `play`, `render` and `--watch` show, which know motion matching alone.
+    /// What `play`, `--watch` and `render` show of motion matching.
     fn locomotion(&self) -> Option<&Locomotion> {
+        None
+    }
+
+    /// What `render` shows of a simulated body: the motion of an episode under a policy.
+    fn motion(&self, _policy: &Policy, _episode: u32) -> Option<(Arc<Model>, MotionClip)> {
         None
     }
 }

@@ -54,13 +54,13 @@ pub fn strips(
     Ok([replayed, driven])
 }
 
-/// Writes a film strip of a motion, replayed for its whole length.
+/// Writes a film strip of the motion, replayed for its whole length.
 ///
 /// # Errors
 /// The file cannot be written, or the GPU was lost.
-pub fn strip(gpu: &Gpu, model: &Arc<Model>, motion: &MotionClip, file: &Path) -> Result<()> {
+pub fn film_strip(gpu: &Gpu, model: &Arc<Model>, motion: &MotionClip, path: &Path) -> Result<()> {
     let mut strip = Strip::new(gpu, model, motion);
-    strip.write(file, strip.replayed())
+    strip.write(path, strip.replayed())
 }
 
 /// What one picture shows: a scene about a point, and how much there is to either side, m.

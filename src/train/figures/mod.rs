@@ -6,7 +6,9 @@ pub mod plane;
 pub mod trajectories;
 
 use super::metrics::UpdateMetrics;
-use crate::report::learning_curve::{Level, Point};
+use super::run_dir::RunDir;
+use crate::report::learning_curve::{self, Level, Point};
+use anyhow::Result;
 
 /// The metrics as a curve shows them.
 pub fn points(rows: &[UpdateMetrics]) -> Vec<Point> {
@@ -30,4 +32,13 @@ pub fn level_marks(rows: &[UpdateMetrics]) -> Vec<Level> {
         })
     });
     marks.collect()
+}
+
+/// Draws `learning_curve.png` without marks.
+///
+/// # Errors
+/// It cannot be written.
+pub fn draw_curve(run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
+    let curve = run.file("learning_curve.png");
+    Ok(learning_curve::draw(&curve, &points(rows), &[], &[])?)
 }

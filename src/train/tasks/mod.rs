@@ -3,13 +3,14 @@
 pub mod obstacles;
 pub mod plane;
 mod presets;
+pub mod stand;
 
 use super::config::{Config, ConfigError, Preset, nearest};
 use super::run_dir::RunDir;
 use super::task::TaskEntry;
 
 /// Every task there is.
-pub static REGISTRY: [TaskEntry; 2] = [plane::ENTRY, obstacles::ENTRY];
+pub static REGISTRY: [TaskEntry; 3] = [plane::ENTRY, obstacles::ENTRY, stand::ENTRY];
 
 /// A task by name.
 ///

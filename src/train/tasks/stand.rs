@@ -1,0 +1,175 @@
+//! The task `stand`: a simulated body stays upright for ten seconds while it is pushed.
+
+use super::presets::fast;
+use crate::env::humanoid::stand::evaluate::{StandReport, evaluate, record};
+use crate::env::humanoid::stand::{Stand, open, spec};
+use crate::env::{EnvBatch, EnvSpec};
+use crate::gpu::Device;
+use crate::nn::Policy;
+use crate::nn::layer::Activation;
+use crate::nn::network::NetworkConfig;
+use crate::physics::model::Model;
+use crate::physics::motion_clip::MotionClip;
+use crate::physics::scenes;
+use crate::rl::ppo::Ppo;
+use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
+use crate::train::evaluation::Evaluation;
+use crate::train::task::{
+    EvalOptions, EvalReport, Loaded, Task, TaskEntry, Unsupported, check_rollout,
+};
+#[cfg(feature = "report")]
+use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
+use anyhow::Result;
+use std::sync::Arc;
+
+pub const ENTRY: TaskEntry = TaskEntry {
+    name: "stand",
+    about: "Keep a simulated body upright while it is pushed",
+    preset,
+    spec: check,
+    load,
+    ablations: &[],
+};
+
+/// Seed of the evaluation episodes: the same for every policy.
+const EPISODES_SEED: u32 = 0x4556_414c;
+
+/// There is no paper whose settings to take: both presets are one.
+fn preset(_: Preset) -> TaskPreset {
+    TaskPreset {
+        settings: table(&Stand::default()),
+        ppo: Ppo {
+            envs: 512,
+            rollout_length: 32,
+            epochs: 4,
+            minibatch_size: 2048,
+            learning_rate: 1e-3,
+            desired_kl: 0.02,
+            gamma: 0.97,
+            lambda: 0.95,
+            // Joints at rest are a good guess: explore near them.
+            init_log_std: -1.0,
+            normalize_observations: true,
+            network: NetworkConfig {
+                convolutions: Vec::new(),
+                encoder_hidden: Vec::new(),
+                hidden: vec![256, 128],
+                activation: Activation::Tanh,
+            },
+            ..fast()
+        },
+        steps: 3_000_000,
+    }
+}
+
+fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
+    let stand: Stand = settings(&config.task.settings)?;
+    stand.check().map_err(ConfigError::Settings)?;
+    check_rollout(config, stand.episode_steps())?;
+    match config.data {
+        Some(_) => Err(ConfigError::Settings(
+            "the task `stand` uses no motion: leave out `data`".into(),
+        )),
+        None => Ok(spec(config.ppo.envs)),
+    }
+}
+
+fn load(config: &Config) -> Result<Loaded> {
+    Ok(Loaded {
+        task: Box::new(StandTask::new(config)?),
+        notes: Vec::new(),
+    })
+}
+
+struct StandTask {
+    stand: Stand,
+}
+
+impl StandTask {
+    fn new(config: &Config) -> Result<Self, ConfigError> {
+        let stand = settings(&config.task.settings)?;
+        Ok(StandTask { stand })
+    }
+
+    fn rate(&self, policy: &Policy, episodes: usize) -> StandReport {
+        let mean = |observation: &[f32]| policy.mean(observation);
+        evaluate(&self.stand, &mean, episodes, EPISODES_SEED)
+    }
+}
+
+impl Task for StandTask {
+    fn settings(&self) -> toml::Table {
+        table(&self.stand)
+    }
+
+    fn with_choices(&self, config: &Config) -> Result<Box<dyn Task>, ConfigError> {
+        Ok(Box::new(StandTask::new(config)?))
+    }
+
+    fn fingerprint(&self) -> u32 {
+        0
+    }
+
+    fn describe(&self) -> String {
+        "no motion".to_string()
+    }
+
+    fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
+        EnvBatch::open(device, envs, None, |part| open(device, &self.stand, part, seed))
+    }
+
+    fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {
+        let found = self.rate(policy, episodes);
+        let measures = [
+            ("episode_length_mean_s", found.mean_episode_s),
+            ("uprightness", found.mean_uprightness),
+        ];
+        Ok(Evaluation {
+            episodes: found.episodes,
+            success: found.survival,
+            measures: measures.into_iter().collect(),
+        })
+    }
+
+    fn sentence(&self, found: &Evaluation) -> String {
+        format!(
+            "{:.1} % of {} episodes stay up for {} s, {:.2} s on average",
+            100.0 * found.success,
+            found.episodes,
+            self.stand.episode_s,
+            found.measure("episode_length_mean_s")
+        )
+    }
+
+    fn report(&self, policy: &Policy, wanted: &EvalOptions) -> Result<EvalReport> {
+        let beside = [
+            ("--baseline", wanted.baseline),
+            ("--planner", wanted.planner > 0),
+            ("--motion-quality", wanted.motion_quality),
+        ];
+        if let Some((option, _)) = beside.into_iter().find(|(_, wanted)| *wanted) {
+            let why = format!("{option} is for motion matching: a simulated body has no such thing");
+            return Err(Unsupported(why).into());
+        }
+        let found = self.evaluate(policy, wanted.episodes)?;
+        Ok(EvalReport {
+            text: format!(
+                "{}\nmean cosine between the torso and upright: {:.3}\n",
+                self.sentence(&found),
+                found.measure("uprightness")
+            ),
+            json: serde_json::to_value(&found)?,
+        })
+    }
+
+    #[cfg(feature = "report")]
+    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
+        figures::draw_curve(run, rows)
+    }
+
+    fn motion(&self, policy: &Policy, episode: u32) -> Option<(Arc<Model>, MotionClip)> {
+        let mean = |observation: &[f32]| policy.mean(observation);
+        let motion = record(&self.stand, &mean, EPISODES_SEED.wrapping_add(episode));
+        Some((Arc::new(scenes::humanoid()), motion))
+    }
+}
