@@ -12,7 +12,7 @@ pub const STAGES: [&str; 10] = [
     "hits",
     "environment",
     "network",
-    "update",
+    "gradient",
     "training",
     "drawing",
 ];
