@@ -2,7 +2,7 @@
 //!
 //! [`bench_device`] is where a stage runs, [`clock`] how it is timed, [`roofline`] what the device can do
 //! at most ([`peak_rates`]); [`data`] are databases of any size. [`search`], [`environment`], [`network`],
-//! [`training`] and [`drawing`] are the stages.
+//! [`physics`], [`training`] and [`drawing`] are the stages.
 
 mod bench_device;
 mod clock;
@@ -11,6 +11,7 @@ mod drawing;
 mod environment;
 mod network;
 mod peak_rates;
+mod physics;
 mod plan;
 mod recorder;
 mod roofline;
@@ -61,6 +62,7 @@ pub fn run(plan: &BenchPlan, tell: &dyn Fn(&str)) -> Result<Vec<Measurement>> {
             matcher: &matcher,
         };
         environment::measure(&context, &mut record)?;
+        physics::measure(&context, &mut record)?;
         network::measure(&context, &mut record)?;
         training::measure(&context, &mut record)?;
         drawing::measure(&context, &mut record)?;

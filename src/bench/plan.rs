@@ -4,13 +4,14 @@ use crate::gpu::Choice;
 use std::path::Path;
 
 /// Names for `--filter`.
-pub const STAGES: [&str; 10] = [
+pub const STAGES: [&str; 11] = [
     "memory",
     "arithmetic",
     "search",
     "rasterize_maps",
     "hits",
     "environment",
+    "physics",
     "network",
     "gradient",
     "training",
