@@ -1,5 +1,7 @@
 //! Playback against what it must leave alone, what it must hold, and how good it must look.
 
+use footwork::env::locomotion::{LocomotionTask, Plane};
+use footwork::matching::MotionMatcher;
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
 use footwork::motion::synthetic;
@@ -10,8 +12,7 @@ use footwork::playback::stitch::Stitching;
 use footwork::playback::two_bone_ik::solve;
 use footwork::playback::{Player, CharacterPose, PlacedFrame};
 use footwork::train::controller::Scripted;
-use footwork::train::rendered_frames::shown;
-use footwork::env::locomotion::{Plane, Task};
+use footwork::train::rendered_frames::rendered_frames;
 use glam::{Quat, Vec3};
 use rand::rngs::SmallRng;
 use rand::{RngExt, SeedableRng};
@@ -110,7 +111,7 @@ fn legs_reach_what_they_can_and_bend_their_knees_forward() {
     let mut random = SmallRng::seed_from_u64(5);
     let skeleton = &DATABASE.skeleton;
     for leg in legs(&DATABASE) {
-        let length = skeleton.solve(leg.hip, leg.foot);
+        let length = skeleton.reach(leg.hip, leg.foot);
         for _ in 0..500 {
             let frame = random.random_range(0..DATABASE.frames());
             let mut pose = at(frame).pose(&DATABASE);
@@ -161,15 +162,17 @@ fn a_target_nobody_can_reach_leaves_numbers() {
     }
 }
 
-/// Scripted motion matching asks for straight walks; its motion must look as the bars say.
+/// Scripted motion matching requests straight walks; its motion must look as the bars say.
 #[test]
 fn shown_motion_stays_near_the_recordings() {
     let scripted = Scripted {
         database: &DATABASE,
         speed: 1.6,
     };
-    let walks = shown(&scripted, &DATABASE, Task::Plane(Plane::default()), 40).unwrap();
-    let found = compare(&DATABASE, &walks);
+    let matcher = Arc::new(MotionMatcher::new(DATABASE.clone()));
+    let task = LocomotionTask::Plane(Plane::default());
+    let episodes = rendered_frames(&scripted, &matcher, task, 40).unwrap();
+    let found = compare(&DATABASE, &episodes);
     assert!(found.jumps > 50, "{found:?}");
     assert!(found.locked.foot_skate_cm_s < 1.5, "{found:?}");
     assert!(

@@ -1,4 +1,4 @@
-"""Reads a footwork database file (`src/store.rs`, `src/motion/database.rs`) into NumPy arrays."""
+"""Reads a footwork database file (`src/container.rs`, `src/motion/database.rs`) into NumPy arrays."""
 
 import json
 import zlib

@@ -1,10 +1,9 @@
-"""footwork's own figures: its search as `cargo bench --bench search` left them, and a training.
+"""footwork's own figures: its search as `footwork bench --json` wrote them, and a training.
 
-python footwork.py DATABASE FOOTWORK
+python footwork.py DATABASE FOOTWORK [--bench FILE]
 """
 
 import json
-import os
 import subprocess
 import tempfile
 from pathlib import Path
@@ -12,21 +11,16 @@ from pathlib import Path
 import plane
 import results
 
-BENCHES = "indexed, all cores, "
+VARIANT = "indexed, "
 
 
-def searches():
-    """Queries a second by name; none if the bench has not run."""
-    found = Path(os.environ.get("CARGO_TARGET_DIR", "target"), "criterion", "search")
-    for path in sorted(found.glob("*/new/benchmark.json")):
-        bench = json.loads(path.read_text())
-        if bench["function_id"].startswith(BENCHES):
-            estimates = json.loads(path.with_name("estimates.json").read_text())
-            name, count = (
-                bench["function_id"].removeprefix(BENCHES),
-                bench["throughput"]["Elements"],
-            )
-            yield name, count / estimates["median"]["point_estimate"] * 1e9
+def searches(bench):
+    """Queries a second on all cores of the CPU, by the kind of queries."""
+    rows = [row for row in json.loads(bench.read_text())["rows"] if row["device"] == "cpu"]
+    cores = max(row["threads"] for row in rows)
+    for row in rows:
+        if row["threads"] == cores and row["variant"].startswith(VARIANT):
+            yield row["variant"].removeprefix(VARIANT), row["per_s"]
 
 
 def training(args, *limits):
@@ -41,11 +35,12 @@ def training(args, *limits):
 def main():
     parser = plane.options(__doc__)
     parser.add_argument("footwork", help="the program")
+    parser.add_argument("--bench", type=Path, help="figures of `footwork bench --filter search`")
     args = parser.parse_args()
-    for name, speed in searches():
+    for name, speed in searches(args.bench) if args.bench else ():
         results.report(args.json, f"search, {name}", results.OURS, "queries/s", speed)
     whole = training(args, "--steps", f"{args.steps}")
-    quick = training(args, "--stop-success", f"{plane.SUCCESS}")
+    quick = training(args, "--stop-at-success", f"{plane.SUCCESS}")
     reached = quick["wall_s"] if quick["success"] >= plane.SUCCESS else None
     plane.report(args, results.OURS, whole["steps"] / whole["wall_s"], reached)
 

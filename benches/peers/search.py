@@ -1,9 +1,9 @@
-"""Exact nearest neighbours by Faiss and SciPy, in queries a second, on all cores.
+"""Exact nearest neighbours by Faiss, SciPy, ann-search and pynear, in queries a second, on all cores.
 
 python search.py DATABASE [QUERIES ...]
 
 QUERIES are files of raw little-endian f32 rows [n][28]: 27 numbers of a query and a 1. Without
-them queries are drawn by the recipe of `benches/search.rs`.
+them queries are drawn by the recipe of `src/bench/search.rs`.
 """
 
 import argparse
@@ -11,15 +11,17 @@ import os
 from pathlib import Path
 from time import perf_counter
 
+import ann_search
 import faiss
 import numpy as np
+import pynear
 from scipy.spatial import cKDTree
 
 import results
 from database import FEATURE, PADDED, POSE, load
 
-COUNT, REPEATS = 4096, 3
-# Deviation of the noise on the asked-for future.
+COUNT, REPEATS = 8192, 3
+# Standard deviation of the noise on the requested future.
 NOISES = {"calm": 0.1, "noisy": 1.0, "wild": 2.6}
 
 
@@ -39,7 +41,7 @@ class Flat:
         self.index.add(rows)
 
     def __call__(self, queries):
-        """Places of the nearest rows."""
+        """Indices of the nearest rows."""
         faiss.cvar.distance_compute_blas_threshold = self.threshold
         return self.index.search(queries, 1)[1][:, 0]
 
@@ -58,7 +60,7 @@ def stored(path):
 
 
 def best(search, queries):
-    """The answer of a search, and its queries a second in the best of several runs."""
+    """The result of a search, and its queries a second in the best of several runs."""
     seconds = []
     for _ in range(REPEATS):
         begin = perf_counter()
@@ -67,9 +69,9 @@ def best(search, queries):
     return nearest, len(queries) / min(seconds)
 
 
-def check(rows, queries, answers):
-    """All answers are rows of the same distance, but for rounding."""
-    distances = [np.linalg.norm(rows[nearest] - queries, axis=1) for nearest in answers]
+def check(rows, queries, found):
+    """All results are rows of the same distance, but for rounding."""
+    distances = [np.linalg.norm(rows[nearest] - queries, axis=1) for nearest in found]
     for distance in distances[1:]:
         np.testing.assert_allclose(distance, distances[0], rtol=1e-3, atol=1e-3)
 
@@ -83,19 +85,24 @@ def main():
 
     rows = load(args.database).rows
     tree = cKDTree(rows)
+    kmknn = ann_search.KmknnIndex(n_neighbors=1).fit(rows)
+    vp_tree = pynear.VPTreeL2Index()
+    vp_tree.set(rows)
     searches = {
         "Faiss IndexFlatL2, as it comes": Flat(rows, AS_IT_COMES),
         "Faiss IndexFlatL2, matrix products": Flat(rows, PRODUCTS),
         "SciPy cKDTree": lambda queries: tree.query(queries, workers=-1)[1],
+        "ann-search KMKNN": lambda queries: kmknn.kneighbors(queries)[1][:, 0],
+        "pynear VPTreeL2": lambda queries: np.array(vp_tree.search1NN(queries)[0]),
     }
     files = {path.stem: stored(path) for path in args.queries}
     for name, queries in (files or {name: drawn(rows, n) for name, n in NOISES.items()}).items():
-        answers = []
+        found = []
         for who, search in searches.items():
             nearest, speed = best(search, queries)
-            answers.append(nearest)
+            found.append(nearest)
             results.report(args.json, f"search, {name}", who, "queries/s", speed)
-        check(rows, queries, answers)
+        check(rows, queries, found)
 
 
 if __name__ == "__main__":

@@ -31,7 +31,12 @@ pub fn measure(bench: &BenchContext, record: &mut Recorder) -> Result<()> {
         let context = PlaythroughContext::new(bench.matcher.clone(), task, Style::BEST);
         let scene = scene(&Playthrough::new(&context, 0), &context);
         let time = seconds(bench.on, || studio.draw(&scene, None))?;
-        record.add(bench.on, bench.roofline, workload(bench, task.name(), 1), time);
+        record.add(
+            bench.on,
+            bench.roofline,
+            workload(bench, task.name(), 1),
+            time,
+        );
     }
     for envs in CROWDS {
         let config = EnvConfig {
@@ -41,14 +46,21 @@ pub fn measure(bench: &BenchContext, record: &mut Recorder) -> Result<()> {
             level: LEVELS - 1,
         };
         let mut batch = config.open(&bench.on.device, bench.matcher)?;
-        let live_view = batch.live_view()?.context("a batch of this task can be watched")?;
+        let live_view = batch
+            .live_view()?
+            .context("a batch of this task can be watched")?;
         let database = &bench.matcher.database;
         let crowd = Crowd::new(&studio.renderer, database, live_view, &plane, envs);
         studio.camera.distance = 8.0 + 0.6 * crowd.side;
         studio.camera.pitch = 0.5;
         let scene = Scene::default();
         let time = seconds(bench.on, || studio.draw(&scene, Some(&crowd)))?;
-        record.add(bench.on, bench.roofline, workload(bench, "crowd", envs), time);
+        record.add(
+            bench.on,
+            bench.roofline,
+            workload(bench, "crowd", envs),
+            time,
+        );
     }
     Ok(())
 }

@@ -110,7 +110,8 @@ impl Stage<'_> {
         let BenchContext {
             plan, on, roofline, ..
         } = *self.bench;
-        let obstacles = 4.0 * ((boxes::FIELDS + VELOCITY_DIM) * self.config.task.obstacles()) as f64;
+        let obstacles =
+            4.0 * ((boxes::FIELDS + VELOCITY_DIM) * self.config.task.obstacles()) as f64;
         let maps = 4.0 * MAP_WORDS as f64;
         let requested = 4.0 * TRAJECTORY_DIM as f64;
         for (stage, bytes) in [
@@ -231,7 +232,13 @@ impl Kernels<'_> {
         seconds(self.bench.on, || {
             match stage {
                 "hits" => hits::launch(
-                    gpu, &action, &normal, &boxes, &state_f32, &state_u32, &count_hits,
+                    gpu,
+                    &action,
+                    &normal,
+                    &boxes,
+                    &state_f32,
+                    &state_u32,
+                    &count_hits,
                 ),
                 _ => rasterize_maps::launch(
                     gpu, &boxes, &velocity, &state_f32, &state_u32, &maps, &rasterize,

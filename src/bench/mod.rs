@@ -1,16 +1,17 @@
 //! `footwork bench`: the speed of each stage on each device, beside what the device could do at most.
 //!
 //! [`bench_device`] is where a stage runs, [`clock`] how it is timed, [`roofline`] what the device can do
-//! at most ([`peak_rates`]); [`data`] are databases of any size. [`search`], [`environment`], [`learn`],
-//! [`training`] and [`drawing`] are the stages.
+//! at most ([`peak_rates`]); [`data`] are databases of any size. [`search`], [`environment`], [`network`],
+//! [`physics`], [`training`] and [`drawing`] are the stages.
 
 mod bench_device;
 mod clock;
 mod data;
 mod drawing;
 mod environment;
-mod learn;
+mod network;
 mod peak_rates;
+mod physics;
 mod plan;
 mod recorder;
 mod roofline;
@@ -54,16 +55,17 @@ pub fn run(plan: &BenchPlan, tell: &dyn Fn(&str)) -> Result<Vec<Measurement>> {
     }
     let matcher = Arc::new(MotionMatcher::new(data.database));
     for (on, roofline) in devices {
-        let bench = BenchContext {
+        let context = BenchContext {
             plan,
             on,
             roofline,
             matcher: &matcher,
         };
-        environment::measure(&bench, &mut record)?;
-        learn::measure(&bench, &mut record)?;
-        training::measure(&bench, &mut record)?;
-        drawing::measure(&bench, &mut record)?;
+        environment::measure(&context, &mut record)?;
+        physics::measure(&context, &mut record)?;
+        network::measure(&context, &mut record)?;
+        training::measure(&context, &mut record)?;
+        drawing::measure(&context, &mut record)?;
     }
     Ok(record.measurements)
 }

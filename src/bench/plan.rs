@@ -4,15 +4,16 @@ use crate::gpu::Choice;
 use std::path::Path;
 
 /// Names for `--filter`.
-pub const STAGES: [&str; 10] = [
+pub const STAGES: [&str; 11] = [
     "memory",
     "arithmetic",
     "search",
     "rasterize_maps",
     "hits",
     "environment",
+    "physics",
     "network",
-    "update",
+    "gradient",
     "training",
     "drawing",
 ];

@@ -1,8 +1,8 @@
 //! The search, among all rows and by the index, in databases of a few thousand frames to a million.
 //!
 //! A query is the pose of one frame with the future of another, and noise of standard deviation 1 on
-//! that: the queries of a policy while it learns. In the whole database also less noise, as of a trained
-//! policy, more, as of an untrained one, and one query at a time on one core.
+//! that: the queries of a policy while it learns. In the whole database also with less and with more noise,
+//! and one query at a time on one core.
 
 use super::bench_device::BenchDevice;
 use super::clock::{MAX_CALL_S, seconds};
@@ -23,9 +23,14 @@ const SIZES: [usize; 5] = [4096, 16_384, 65_536, 262_144, 1_048_576];
 /// Queries of a batch; the search over all rows on the CPU, an oracle, gets fewer.
 const QUERIES: usize = 8192;
 const FEW: usize = 16;
-/// Standard deviations of the noise on queries.
+/// Standard deviation of the noise on queries.
 const NOISE: f32 = 1.0;
-const OTHER_NOISE: [(&str, f32); 2] = [("indexed, calm", 0.1), ("indexed, wild", 2.6)];
+/// That of a trained policy, of one that learns, and of an untrained one.
+const NOISES: [(&str, f32); 3] = [
+    ("indexed, calm", 0.1),
+    ("indexed, noisy", NOISE),
+    ("indexed, wild", 2.6),
+];
 
 /// Measures all devices, size by size, so that each database and index is built once.
 pub fn measure(
@@ -53,13 +58,13 @@ pub fn measure(
     whole(data, devices, record)
 }
 
-/// Other queries of the whole database.
+/// Measures queries of the whole database.
 fn whole(
     data: &BenchData,
     devices: &[(&BenchDevice, &Roofline)],
     record: &mut Recorder,
 ) -> Result<()> {
-    for (variant, noise) in OTHER_NOISE {
+    for (variant, noise) in NOISES {
         let case = Case::new(&data.database, noise);
         for &(on, roofline) in devices {
             (record.tell)(&format!("{}: search, {variant}", on.name()));

@@ -15,7 +15,7 @@ use std::time::Duration;
 #[derive(Args)]
 pub struct Bench {
     /// Only stages with this in their name: memory, arithmetic, search, rasterize_maps, hits, environment,
-    /// network, update, training, drawing
+    /// physics, network, gradient, training, drawing
     #[arg(
         long,
         value_name = "NAME",

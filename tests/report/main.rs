@@ -64,7 +64,7 @@ impl Picture {
 }
 
 /// Draws into a fresh folder and checks that the picture is all that is left there.
-fn drawn(draw: impl FnOnce(&Path) -> Result<(), Error>) -> Picture {
+fn drawn(draw: impl FnOnce(&Path) -> Result<(), ReportError>) -> Picture {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("picture.png");
     draw(&path).unwrap();

@@ -1,39 +1,59 @@
-use crate::{DATABASE, Picture, gpu};
-use footwork::gpu::Device;
+use crate::{DATABASE, MATCHER, Picture, gpu};
+use footwork::container::Section;
+use footwork::env::locomotion::{EnvConfig, EnvState, LocomotionTask, Obstacles, Plane};
+use footwork::env::{EnvBatch, Transition};
+use footwork::gpu::{Array, Device};
 use footwork::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
 use footwork::playback::PlacedFrame;
 use footwork::view::capsule_rig::CapsuleRig;
 use footwork::view::scene::Cuboid;
 use footwork::view::{Camera, Crowd, Renderer, Scene};
-use footwork::env::locomotion::{self, Obstacles, Plane, Setup, Task, World};
 use glam::Vec3;
 
 const SIZE: [u32; 2] = [240, 160];
 
-fn one(device: &Device, task: Task) -> Box<dyn World> {
-    let setup = Setup {
+fn one(device: &Device, task: LocomotionTask) -> EnvBatch {
+    let config = EnvConfig {
         task,
         envs: 1,
-        horizon: 4,
         seed: 5,
         level: 9,
     };
-    locomotion::open(device, &DATABASE, &setup)
+    config.open(device, &MATCHER).unwrap()
+}
+
+fn state(batch: &EnvBatch, task: LocomotionTask) -> EnvState {
+    let mut section = Section::default();
+    batch.parts[0].save(&mut section).unwrap();
+    EnvState::load(&mut section, 1, task.obstacles(), DATABASE.frames()).unwrap()
+}
+
+/// Plays a step whose action is the mean trajectory.
+fn step(batch: &mut EnvBatch, device: &Device) {
+    let spec = batch.spec();
+    batch.parts[0].step(
+        &Array::zeroed(device, spec.action),
+        0,
+        Transition {
+            step: 0,
+            reward: &mut Array::zeroed(device, 1),
+            termination: &mut Array::zeroed(device, 1),
+            final_observation: &mut Array::zeroed(device, spec.observation.dim()),
+        },
+    );
 }
 
 /// A crowd of one must look like its only character, wherever its state is kept.
 fn one_of_a_crowd(device: Device) {
-    let task = Task::Plane(Plane::default());
-    let mut world = one(&device, task);
+    let task = LocomotionTask::Plane(Plane::default());
+    let mut batch = one(&device, task);
     let mut renderer = Renderer::new(&gpu());
-    let watched = world.watch().unwrap();
-    let crowd = Crowd::new(&renderer, &DATABASE, watched, &task, 1);
+    let live_view = batch.live_view().unwrap().unwrap();
+    let crowd = Crowd::new(&renderer, &DATABASE, live_view, &task, 1);
     for _ in 0..3 {
-        let observed = world.observe();
-        let action = observed.zeros_like().narrow(1, 0, 12);
-        world.step(action);
+        step(&mut batch, &device);
     }
-    let state = world.snapshot().unwrap();
+    let state = state(&batch, task);
     let shown = PlacedFrame {
         frame: state.state_u32[state_u32::FRAME] as usize,
         at: [state.state_f32[state_f32::X], state.state_f32[state_f32::Z]],
@@ -68,14 +88,14 @@ fn one_of_a_crowd(device: Device) {
     assert!(far > 0.03, "{far}");
 }
 
-/// Its obstacles must lie where a single world's would be drawn.
+/// Its obstacles must be where a single environment's would be drawn.
 fn obstacles_of_a_crowd(device: Device) {
-    let task = Task::Obstacles(Obstacles::FAST);
-    let mut world = one(&device, task);
+    let task = LocomotionTask::Obstacles(Obstacles::FAST);
+    let mut batch = one(&device, task);
     let mut renderer = Renderer::new(&gpu());
-    let watched = world.watch().unwrap();
-    let crowd = Crowd::new(&renderer, &DATABASE, watched, &task, 1);
-    let state = world.snapshot().unwrap();
+    let live_view = batch.live_view().unwrap().unwrap();
+    let crowd = Crowd::new(&renderer, &DATABASE, live_view, &task, 1);
+    let state = state(&batch, task);
     let mut scene = Scene::default();
     for slot in 0..100 {
         let at = |field: usize| state.boxes[field * 100 + slot];

@@ -5,28 +5,32 @@ mod crowd;
 mod pictures;
 mod viewer;
 
+use footwork::env::locomotion::LocomotionTask;
 use footwork::gpu::Gpu;
+use footwork::matching::MotionMatcher;
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
 use footwork::motion::synthetic;
 use footwork::playback::player::Style;
 use footwork::train::controller::{Controller, Scripted};
 use footwork::view::playthrough::PlaythroughContext;
-use footwork::view::{Camera, RenderTarget, Crowd, Renderer, Scene};
-use footwork::env::locomotion::Task;
+use footwork::view::painter::Drawable;
+use footwork::view::{Camera, RenderTarget, Renderer, Scene};
 use std::sync::{Arc, LazyLock};
 
 static DATABASE: LazyLock<Arc<Database>> = LazyLock::new(|| {
     let (clips, roles) = synthetic::perform(1, 1.0);
     Arc::new(Database::build(&clips, roles, Weights::PAPER).unwrap())
 });
+static MATCHER: LazyLock<Arc<MotionMatcher>> =
+    LazyLock::new(|| Arc::new(MotionMatcher::new(DATABASE.clone())));
 
 fn gpu() -> Gpu {
     Gpu::lavapipe().expect("lavapipe")
 }
 
-fn context(task: Task) -> PlaythroughContext {
-    PlaythroughContext::new(DATABASE.clone(), task, Style::BEST)
+fn context(task: LocomotionTask) -> PlaythroughContext {
+    PlaythroughContext::new(MATCHER.clone(), task, Style::BEST)
 }
 
 /// Walks straight to the target.
@@ -50,19 +54,19 @@ struct Picture {
 }
 
 impl Picture {
-    fn draw(scene: &Scene, crowd: Option<&Crowd>, camera: &Camera, size: [u32; 2]) -> Picture {
-        Self::with(&mut Renderer::new(&gpu()), scene, crowd, camera, size)
+    fn draw(scene: &Scene, beside: Option<&dyn Drawable>, camera: &Camera, size: [u32; 2]) -> Picture {
+        Self::with(&mut Renderer::new(&gpu()), scene, beside, camera, size)
     }
 
     fn with(
         renderer: &mut Renderer,
         scene: &Scene,
-        crowd: Option<&Crowd>,
+        beside: Option<&dyn Drawable>,
         camera: &Camera,
         size: [u32; 2],
     ) -> Picture {
         let target = RenderTarget::new(&renderer.device, size);
-        renderer.draw(scene, crowd, camera, &target);
+        renderer.draw(scene, beside, camera, &target);
         let rgb = target.read(&renderer.device, &renderer.queue).unwrap();
         Picture { size, rgb }
     }

@@ -4,7 +4,7 @@ use footwork::view::capsule_rig::CapsuleRig;
 use footwork::view::debug_draw::scene;
 use footwork::view::playthrough::Playthrough;
 use footwork::view::{Camera, Scene};
-use footwork::env::locomotion::{Obstacles, Plane, Task};
+use footwork::env::locomotion::{Obstacles, Plane, LocomotionTask};
 
 const SIZE: [u32; 2] = [240, 160];
 
@@ -86,7 +86,7 @@ fn a_ball_casts_its_shadow_away_from_the_sun() {
 
 #[test]
 fn a_walk_looks_as_it_did() {
-    let context = context(Task::Plane(Plane::default()));
+    let context = context(LocomotionTask::Plane(Plane::default()));
     let mut playthrough = Playthrough::new(&context, 2);
     let mut camera = Camera {
         distance: 4.0,
@@ -101,7 +101,7 @@ fn a_walk_looks_as_it_did() {
 
 #[test]
 fn obstacles_look_as_they_did() {
-    let context = context(Task::Obstacles(Obstacles::FAST));
+    let context = context(LocomotionTask::Obstacles(Obstacles::FAST));
     let mut playthrough = Playthrough::new(&context, 1);
     let mut camera = Camera {
         distance: 9.0,

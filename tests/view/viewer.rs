@@ -11,10 +11,10 @@ use footwork::viewer::Viewer;
 use footwork::viewer::app::PolicyEntry;
 use footwork::viewer::window::shared;
 use footwork::view::playthrough::Playthrough;
-use footwork::env::locomotion::{Obstacles, Plane, Task};
+use footwork::env::locomotion::{Obstacles, Plane, LocomotionTask};
 
-fn plane() -> Task {
-    Task::Plane(Plane::default())
+fn plane() -> LocomotionTask {
+    LocomotionTask::Plane(Plane::default())
 }
 /// A point of the ground in front of the character.
 const GROUND: Pos2 = Pos2::new(250.0, 430.0);
@@ -33,7 +33,7 @@ fn broken() -> PolicyEntry {
     }
 }
 
-fn open(task: Task, policies: Vec<PolicyEntry>) -> Harness<'static, Viewer> {
+fn open(task: LocomotionTask, policies: Vec<PolicyEntry>) -> Harness<'static, Viewer> {
     let gpu = gpu();
     let window = create_render_state(shared(&gpu), Default::default());
     let viewer = Viewer::new(&gpu, &window, context(task), policies).unwrap();
@@ -86,7 +86,7 @@ fn pauses_steps_and_goes_back() {
 }
 
 #[test]
-fn a_rewound_rollout_plays_the_same_again() {
+fn a_rewound_playthrough_plays_the_same_again() {
     let mut harness = open(plane(), vec![walker()]);
     press(&mut harness, "Pause");
     for _ in 0..2 * FRAMES_PER_STEP {
@@ -123,7 +123,7 @@ fn a_click_moves_the_target() {
 
 #[test]
 fn an_obstacle_is_dragged() {
-    let task = Task::Obstacles(Obstacles {
+    let task = LocomotionTask::Obstacles(Obstacles {
         // One under every part of the picture.
         side_min: 3.0,
         count: 400,
@@ -193,7 +193,7 @@ fn clips_play_as_recorded() {
 
 #[test]
 fn tells_why_a_frame_was_chosen() {
-    let mut harness = open(Task::Obstacles(Obstacles::FAST), vec![walker()]);
+    let mut harness = open(LocomotionTask::Obstacles(Obstacles::FAST), vec![walker()]);
     harness.run_steps(10);
     harness.get_by_label("Obstacle maps");
     harness.get_by_label("trajectory");
@@ -207,11 +207,11 @@ fn tells_why_a_frame_was_chosen() {
 
 #[test]
 fn an_obstacle_moved_by_hand_is_seen() {
-    let context = context(Task::Obstacles(Obstacles::FAST));
+    let context = context(LocomotionTask::Obstacles(Obstacles::FAST));
     let mut playthrough = Playthrough::new(&context, 0);
-    let before = playthrough.world.maps.clone();
+    let before = playthrough.env.maps.clone();
     playthrough.move_obstacle(0, playthrough.shown.at);
-    assert_ne!(playthrough.world.maps, before);
+    assert_ne!(playthrough.env.maps, before);
 }
 
 #[test]
