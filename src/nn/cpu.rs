@@ -11,7 +11,7 @@ mod matmul;
 mod microkernel;
 mod tanh;
 
-use super::engine::{EngineSize, Rows};
+use super::engine::{EngineSize, Rows, Samples};
 use super::network::{LayerParams, Network};
 use super::objective::{HostBatch, Objective};
 use crate::gpu::Array;
@@ -31,7 +31,7 @@ const BLOCK_ROWS: usize = 2048;
 const WIDE_INPUTS: usize = 128;
 
 /// Networks over one flat vector, on the CPU.
-pub struct CpuEngine {
+pub(super) struct CpuEngine {
     networks: Vec<Network>,
     size: EngineSize,
 }
@@ -45,16 +45,14 @@ impl CpuEngine {
         &self,
         network: usize,
         parameters: &Array,
-        observations: &Array,
-        first: usize,
-        rows: usize,
+        samples: Samples,
         out: &mut Array,
         out_at: usize,
     ) {
         let network = &self.networks[network];
-        let width = network.observation().dim();
-        let observations = &observations.host()[first * width..][..rows * width];
-        let out = &mut out.host_mut()[out_at..][..rows * network.outputs()];
+        let Samples { width, count, .. } = samples;
+        let observations = &samples.values.host()[samples.first * width..][..count * width];
+        let out = &mut out.host_mut()[out_at..][..count * network.outputs()];
         forward(network, parameters.host(), observations, out);
     }
 

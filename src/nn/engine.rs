@@ -2,9 +2,11 @@
 
 use super::cpu::CpuEngine;
 #[cfg(feature = "gpu")]
-use super::gpu::GpuEngine;
+use super::gpu::{fused::Fused, layerwise::Layerwise};
 use super::network::Network;
 use super::objective::Objective;
+#[cfg(feature = "gpu")]
+use crate::gpu::Gpu;
 use crate::gpu::{Array, Device};
 use anyhow::Result;
 use std::ops::Range;
@@ -15,12 +17,16 @@ use std::ops::Range;
 /// objective knows of.
 pub struct Engine {
     backend: Backend,
+    /// Numbers of an observation.
+    observation: usize,
 }
 
 enum Backend {
     Cpu(CpuEngine),
     #[cfg(feature = "gpu")]
-    Gpu(Box<GpuEngine>),
+    Fused(Box<Fused>),
+    #[cfg(feature = "gpu")]
+    Layerwise(Layerwise),
 }
 
 /// Which of the samples make up a minibatch.
@@ -53,14 +59,33 @@ impl Engine {
             max_rows,
             minibatch,
         };
+        let observation = networks[0].observation().dim();
         let backend = match device {
             Device::Cpu => Backend::Cpu(CpuEngine::new(networks, size)),
             #[cfg(feature = "gpu")]
-            Device::Gpu(gpu) => Backend::Gpu(Box::new(GpuEngine::new(gpu, networks, size)?)),
+            Device::Gpu(gpu) => match Fused::new(gpu, &networks, size) {
+                Some(fused) => Backend::Fused(Box::new(fused)),
+                None => Backend::Layerwise(Layerwise::new(gpu, networks, size)?),
+            },
             #[cfg(not(feature = "gpu"))]
             Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
         };
-        Ok(Engine { backend })
+        Ok(Engine {
+            backend,
+            observation,
+        })
+    }
+
+    /// The same in tensors, however narrow the layers are.
+    ///
+    /// # Errors
+    /// The device has no room for that.
+    #[cfg(feature = "gpu")]
+    pub fn layerwise(gpu: &Gpu, networks: Vec<Network>, size: EngineSize) -> Result<Self> {
+        Ok(Engine {
+            observation: networks[0].observation().dim(),
+            backend: Backend::Layerwise(Layerwise::new(gpu, networks, size)?),
+        })
     }
 
     /// Writes the outputs `[rows][outputs]` of a network to `out` from the index `out_at` on, for so many
@@ -75,14 +100,18 @@ impl Engine {
         out: &mut Array,
         out_at: usize,
     ) {
+        let samples = Samples {
+            values: observations,
+            width: self.observation,
+            first,
+            count: rows,
+        };
         match &self.backend {
-            Backend::Cpu(engine) => {
-                engine.forward(network, parameters, observations, first, rows, out, out_at);
-            }
+            Backend::Cpu(engine) => engine.forward(network, parameters, samples, out, out_at),
             #[cfg(feature = "gpu")]
-            Backend::Gpu(engine) => {
-                engine.forward(network, parameters, observations, first, rows, out, out_at);
-            }
+            Backend::Fused(engine) => engine.forward(network, parameters, samples, out, out_at),
+            #[cfg(feature = "gpu")]
+            Backend::Layerwise(engine) => engine.forward(network, parameters, samples, out, out_at),
         }
     }
 
@@ -99,19 +128,39 @@ impl Engine {
         gradient: &mut Array,
         sums: &mut Array,
     ) {
+        #[cfg(feature = "gpu")]
+        let in_order = |rows: Rows| match rows {
+            Rows::Range(rows) => Samples {
+                values: samples,
+                width,
+                first: rows.start,
+                count: rows.len(),
+            },
+            Rows::Indices(_) => unreachable!("a GPU is given samples in their order"),
+        };
         match &mut self.backend {
             Backend::Cpu(engine) => {
                 engine.gradient(parameters, samples, width, rows, objective, gradient, sums);
             }
             #[cfg(feature = "gpu")]
-            Backend::Gpu(engine) => {
-                let Rows::Range(rows) = rows else {
-                    unreachable!("a GPU is given samples in their order")
-                };
-                engine.gradient(parameters, samples, width, rows, objective, gradient, sums);
+            Backend::Fused(engine) => {
+                engine.gradient(parameters, in_order(rows), objective, gradient, sums);
+            }
+            #[cfg(feature = "gpu")]
+            Backend::Layerwise(engine) => {
+                engine.gradient(parameters, in_order(rows), objective, gradient, sums);
             }
         }
     }
+}
+
+/// Samples `[..][width]` that begin with observations: `count` of them from `first` on.
+#[derive(Clone, Copy)]
+pub(super) struct Samples<'a> {
+    pub values: &'a Array,
+    pub width: usize,
+    pub first: usize,
+    pub count: usize,
 }
 
 /// What [`Engine::new`] is told of what there is to evaluate and to learn.

@@ -11,7 +11,6 @@ mod bench;
 mod bodies;
 mod contact;
 mod learn;
-mod learning;
 mod locomotion;
 mod rng;
 mod search;

@@ -9,7 +9,6 @@ mod running;
 use footwork::gpu::{Array, Choice, Device};
 use footwork::kernels::rng::{gaussian, random4};
 use footwork::nn::engine::EngineSize;
-use footwork::nn::gpu::GpuEngine;
 use footwork::nn::layer::{Activation, Convolution};
 use footwork::nn::observation::ObservationSpec;
 use footwork::nn::{ActorCritic, Adam, Engine, NetworkConfig, Policy, Rows};
@@ -120,14 +119,38 @@ impl Case {
 
     /// By the engine that the device has for such networks.
     fn on(&self, device: &Device) -> Outcome {
-        let mut engine = self.engine(device);
+        self.by(self.engine(device), device)
+    }
+
+    /// In tensors, whatever the networks.
+    fn layerwise(&self) -> Outcome {
+        let device = lavapipe();
+        let Device::Gpu(gpu) = &device else {
+            unreachable!("lavapipe is a GPU")
+        };
+        let engine = Engine::layerwise(gpu, self.networks.networks(), self.size());
+        self.by(engine.expect("an engine"), &device)
+    }
+
+    fn by(&self, mut engine: Engine, device: &Device) -> Outcome {
         let array = |values: &[f32]| Array::from_slice(device, values);
         let (parameters, observations) = (array(&self.parameters), array(&self.observations()));
         let count = self.count();
         let mut out = array(&vec![7.0; 2 + count * (ACTION + 1)]);
         engine.forward(0, &parameters, &observations, 0, count, &mut out, 1);
-        let at = 1 + count * ACTION;
-        engine.forward(1, &parameters, &observations, 0, count, &mut out, at);
+        // Some rows after others.
+        let (at, half) = (1 + count * ACTION, count / 2);
+        engine.forward(1, &parameters, &observations, 0, half, &mut out, at);
+        let rest = count - half;
+        engine.forward(
+            1,
+            &parameters,
+            &observations,
+            half,
+            rest,
+            &mut out,
+            at + half,
+        );
         let old_log_std = array(&self.old_log_std);
         let objective = self.objective(&old_log_std);
         let mut gradient = array(&vec![9.0; self.parameters.len()]);
@@ -137,38 +160,6 @@ impl Case {
             &array(&self.samples),
             self.width,
             Rows::Range(0..count),
-            &objective,
-            &mut gradient,
-            &mut sums,
-        );
-        self.outcome(device, &out, &gradient, &sums)
-    }
-
-    /// In tensors, whatever the networks.
-    fn layerwise(&self) -> Outcome {
-        let device = &lavapipe();
-        let Device::Gpu(gpu) = device else {
-            unreachable!("lavapipe is a GPU")
-        };
-        let mut engine =
-            GpuEngine::layerwise(gpu, self.networks.networks(), self.size()).expect("an engine");
-        let array = |values: &[f32]| Array::from_slice(device, values);
-        let (parameters, observations) = (array(&self.parameters), array(&self.observations()));
-        let count = self.count();
-        let mut out = array(&vec![7.0; 2 + count * (ACTION + 1)]);
-        engine.forward(0, &parameters, &observations, 0, count, &mut out, 1);
-        let at = 1 + count * ACTION;
-        engine.forward(1, &parameters, &observations, 0, count, &mut out, at);
-        let old_log_std = array(&self.old_log_std);
-        let objective = self.objective(&old_log_std);
-        let mut gradient = array(&vec![9.0; self.parameters.len()]);
-        let mut sums = array(&[0.5; SUMS]);
-        let samples = array(&self.samples);
-        engine.gradient(
-            &parameters,
-            &samples,
-            self.width,
-            0..count,
             &objective,
             &mut gradient,
             &mut sums,

@@ -1,11 +1,11 @@
 //! Networks of any layers, one after another in burn's tensors: products of matrices and convolutions, whose
 //! gradients are taken by hand.
 
+use super::dims;
 use super::tensors::{column_sums, write};
-use super::{Samples, dims};
 use crate::gpu::tensor::{from_buffer, to_buffer};
 use crate::gpu::{Array, Buffer, Device, Gpu};
-use crate::nn::engine::EngineSize;
+use crate::nn::engine::{EngineSize, Samples};
 use crate::nn::layer::{Activation, Layer};
 use crate::nn::network::{LayerParams, Network};
 use crate::nn::objective::{GpuBatch, Objective};
@@ -22,6 +22,7 @@ const AT_ONCE: usize = 1 << 24;
 /// What the networks need on the device.
 pub struct Layerwise {
     gpu: Gpu,
+    networks: Vec<Network>,
     dims: Buffer<u32>,
     /// Parameters behind the networks', and all extras.
     others: usize,
@@ -31,26 +32,28 @@ pub struct Layerwise {
 impl Layerwise {
     /// # Errors
     /// What a minibatch needs is too large for the device.
-    pub fn new(gpu: &Gpu, networks: &[Network], size: EngineSize) -> Result<Self> {
+    pub fn new(gpu: &Gpu, networks: Vec<Network>, size: EngineSize) -> Result<Self> {
         let widest = networks.iter().map(widest).max().unwrap_or(0);
         let device = Device::from(gpu.clone());
         device.holds("activations of a minibatch", size.minibatch * widest)?;
         Ok(Layerwise {
             gpu: gpu.clone(),
-            dims: dims(gpu, networks, size),
-            others: size.others(networks),
+            dims: dims(gpu, &networks, size),
+            others: size.others(&networks),
+            networks,
             extras: size.extras,
         })
     }
 
     pub fn forward(
         &self,
-        network: &Network,
+        network: usize,
         parameters: &Array,
         batch: Samples,
         out: &mut Array,
         out_at: usize,
     ) {
+        let network = &self.networks[network];
         let most = (AT_ONCE / widest(network)).max(1);
         let flat = self.flat(parameters);
         let part = |start: usize| {
@@ -69,7 +72,6 @@ impl Layerwise {
 
     pub fn gradient(
         &self,
-        networks: &[Network],
         parameters: &Array,
         batch: Samples,
         objective: &dyn Objective,
@@ -79,7 +81,7 @@ impl Layerwise {
         let (gpu, count) = (&self.gpu, batch.count);
         let flat = self.flat(parameters);
         let pass = |network: &Network| Pass::new(network, &flat, self.observations(network, batch));
-        let (passes, outputs): (Vec<Pass>, Vec<Tensor<2>>) = networks.iter().map(pass).unzip();
+        let (passes, outputs): (Vec<Pass>, Vec<Tensor<2>>) = self.networks.iter().map(pass).unzip();
         let outputs = outputs.into_iter().map(|outputs| outputs.flatten(0, 1));
         let outputs = to_buffer(Tensor::<1>::cat(outputs.collect(), 0));
         let (output_grads, extras) = (
@@ -101,7 +103,7 @@ impl Layerwise {
         let output_grads: Tensor<1> = from_buffer(gpu, &output_grads, [output_grads.len()]);
         let mut parts = Vec::new();
         let mut at = 0;
-        for (network, pass) in networks.iter().zip(&passes) {
+        for (network, pass) in self.networks.iter().zip(&passes) {
             let length = count * network.outputs();
             let grads = output_grads.clone().narrow(0, at, length);
             let grads = grads.reshape([count, network.outputs()]);

@@ -1,6 +1,14 @@
-//! Learning: sampling, advantages, normalisation.
+//! Learning: sampling, advantages, normalisation; the gradient of dense networks, and the step against it.
 
+mod adam;
+mod backward;
+mod forward;
 mod gae;
 mod gather_samples;
+mod grad_norm;
+mod gradient;
+mod network;
+mod ppo_loss;
+mod reduce_grads;
 mod rollout_moments;
 mod sample_action;
