@@ -1,8 +1,10 @@
-//! Contacts of pairs of shapes against those MuJoCo finds (`tests/oracle/collide.py`), and of worlds
+//! Contacts of pairs of shapes against those MuJoCo finds (`tests/reference/collide.py`), and of worlds
 //! against all pairs one by one.
 
 use crate::golden;
-use footwork::physics::collision::{DetectedContacts, MOST, WorldGeom, ContactPoint, ContactManifold, collide, find};
+use footwork::physics::collision::{
+    ContactManifold, ContactPoint, DetectedContacts, MAX_POINTS, WorldGeom, collide, detect_contacts,
+};
 use footwork::physics::model::{Geom, Model, GeomShape};
 use footwork::physics::pose::Pose;
 use glam::{Mat3, Quat, Vec3};
@@ -142,9 +144,9 @@ fn touches_as_in_mujoco() {
         *most = std::array::from_fn(|i| most[i].max(parts[i]));
     }
     assert_eq!(most.len(), 9);
-    for (pair, [place, normal, tangent, distance]) in most {
+    for (pair, [position, normal, tangent, distance]) in most {
         println!(
-            "{pair}: place {position:.2}, normal {normal:.2}, tangent {tangent:.2}, distance {distance:.2} of the bar"
+            "{pair}: position {position:.2}, normal {normal:.2}, tangent {tangent:.2}, distance {distance:.2} of the bar"
         );
     }
 }
@@ -164,7 +166,7 @@ fn crowd(count: usize) -> Model {
         rotation: Quat::from_scaled_axis(wave(index + 7, 2.0)),
         friction: 1.0,
         frictionless: false,
-        softness: Default::default(),
+        solver_params: Default::default(),
     };
     let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
     Model {
@@ -201,7 +203,7 @@ fn contacts(model: &Model, poses: &[Pose], max_contacts: usize) -> DetectedConta
 #[test]
 fn finds_what_all_pairs_have_one_by_one() {
     let (model, poses) = (crowd(32), poses(15));
-    let placed: Vec<WorldGeom> = model.geoms.iter().map(|geom| place(geom, &poses)).collect();
+    let placed: Vec<WorldGeom> = model.geoms.iter().map(|geom| position(geom, &poses)).collect();
     let (mut wanted, mut keys) = (Vec::new(), Vec::new());
     for (pair, &[first, second]) in model.pairs.iter().enumerate() {
         let touches = touches(&placed[first], &placed[second]);
@@ -210,17 +212,17 @@ fn finds_what_all_pairs_have_one_by_one() {
             touches
                 .numbers()
                 .iter()
-                .map(|number| (pair * MOST) as u32 + number),
+                .map(|number| (pair * MAX_POINTS) as u32 + number),
         );
     }
     let found = contacts(&model, &poses, usize::MAX);
     assert!(wanted.len() > 100, "{}", wanted.len());
-    assert_eq!(found.touches, wanted);
-    assert_eq!(found.keys, keys);
+    assert_eq!(found.points, wanted);
+    assert_eq!(found.ids, keys);
     assert!(keys.is_sorted_by(|a, b| a < b), "keys tell contacts apart");
 }
 
-fn place(geom: &Geom, poses: &[Pose]) -> WorldGeom {
+fn position(geom: &Geom, poses: &[Pose]) -> WorldGeom {
     let pose = geom.pose(poses);
     WorldGeom {
         shape: geom.shape,
@@ -233,10 +235,10 @@ fn place(geom: &Geom, poses: &[Pose]) -> WorldGeom {
 fn counts_what_finds_no_slot() {
     let (model, poses) = (crowd(32), poses(15));
     let all = contacts(&model, &poses, usize::MAX);
-    for max_contacts in [0, 1, 7, all.touches.len() - 1, all.touches.len()] {
+    for max_contacts in [0, 1, 7, all.points.len() - 1, all.points.len()] {
         let some = contacts(&model, &poses, max_contacts);
-        assert_eq!(some.touches, all.touches[..max_contacts]);
-        assert_eq!(some.keys, all.keys[..max_contacts]);
-        assert_eq!(some.overflow as usize, all.touches.len() - max_contacts);
+        assert_eq!(some.points, all.points[..max_contacts]);
+        assert_eq!(some.ids, all.ids[..max_contacts]);
+        assert_eq!(some.overflow as usize, all.points.len() - max_contacts);
     }
 }

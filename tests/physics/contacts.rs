@@ -8,13 +8,13 @@ use std::sync::Arc;
 #[test]
 fn agrees_with_mujoco_in_a_thousand_states() {
     let model = Arc::new(humanoid());
-    let (nq, nv, driven) = (model.nq(), model.nv(), model.driven());
+    let (nq, nv, driven) = (model.nq(), model.nv(), model.nu());
     let bodies = model.bodies.len();
     let settings = SolverOptions {
         max_contacts: 64,
         ..SolverOptions::converged(&model)
     };
-    let mut physics = Simulator::new(model.clone(), settings);
+    let mut simulator = Simulator::new(model.clone(), settings);
     let mut state = SimulatorState::new(&model);
     let golden = Golden::open("contacts.f32", nq + nv + driven + 2 + nv + 3 * bodies);
     let (mut accelerations, mut forces) = (Vec::new(), Vec::new());
@@ -24,13 +24,13 @@ fn agrees_with_mujoco_in_a_thousand_states() {
         state.v.copy_from_slice(row.take(nv));
         let targets = row.take(driven);
         let counts = row.take(2).to_vec();
-        physics.forward(&state, targets, &[]);
-        let found = [physics.contacts.len(), physics.limits.len()].map(|n| n as f32);
+        simulator.forward(&state, targets, &[]);
+        let found = [simulator.contact_constraints.len(), simulator.limit_constraints.len()].map(|n| n as f32);
         if found != counts[..] {
             miscounted += 1;
         }
-        accelerations.push(relative(physics.acceleration(), row.take(nv)));
-        let net: Vec<f32> = physics
+        accelerations.push(relative(simulator.qacc(), row.take(nv)));
+        let net: Vec<f32> = simulator
             .body_forces()
             .iter()
             .flat_map(|f| f.to_array())

@@ -39,9 +39,9 @@ fn times(model: &Model, matrix: &[f32], vector: &[f32]) -> Vec<f32> {
 #[test]
 fn agrees_with_mujoco_in_a_thousand_states() {
     let model = floating();
-    let (nq, nv, driven) = (model.nq(), model.nv(), model.driven());
+    let (nq, nv, driven) = (model.nq(), model.nv(), model.nu());
     let bodies = model.bodies.len();
-    let mut physics = Simulator::new(model.clone(), SolverOptions::fast(&model));
+    let mut simulator = Simulator::new(model.clone(), SolverOptions::fast(&model));
     let mut state = SimulatorState::new(&model);
     let golden = Golden::open("dynamics.f32", nq + nv + driven + nv + 3 * bodies + 3 * nv);
     let mut worst = [0.0f32; 4];
@@ -51,15 +51,15 @@ fn agrees_with_mujoco_in_a_thousand_states() {
         state.v.copy_from_slice(row.take(nv));
         let targets = row.take(driven);
         let probe = row.take(nv);
-        physics.forward(&state, targets, &[]);
+        simulator.forward(&state, targets, &[]);
         let places = row.take(3 * bodies);
-        for (pose, place) in physics.poses.iter().zip(places.chunks_exact(3)) {
-            worst[0] = worst[0].max((pose.position - Vec3::from_slice(place)).length());
+        for (pose, position) in simulator.poses.iter().zip(places.chunks_exact(3)) {
+            worst[0] = worst[0].max((pose.position - Vec3::from_slice(position)).length());
         }
-        let moved = times(&model, &physics.matrix, probe);
+        let moved = times(&model, &simulator.mass_matrix, probe);
         worst[1] = worst[1].max(relative(&moved, row.take(nv)));
-        worst[2] = worst[2].max(relative(&physics.bias, row.take(nv)));
-        let off = relative(physics.acceleration(), row.take(nv));
+        worst[2] = worst[2].max(relative(&simulator.bias, row.take(nv)));
+        let off = relative(simulator.qacc(), row.take(nv));
         worst[3] = worst[3].max(off);
         accelerations.push(off);
     }
@@ -80,8 +80,8 @@ fn agrees_with_mujoco_in_a_thousand_states() {
 #[test]
 fn flies_as_in_mujoco() {
     let model = floating();
-    let (nq, nv, driven) = (model.nq(), model.nv(), model.driven());
-    let mut physics = Simulator::new(model.clone(), SolverOptions::fast(&model));
+    let (nq, nv, driven) = (model.nq(), model.nv(), model.nu());
+    let mut simulator = Simulator::new(model.clone(), SolverOptions::fast(&model));
     let mut state = SimulatorState::new(&model);
     let golden = Golden::open("trajectories.f32", 2 * (nq + nv) + driven);
     let mut worst = 0.0f32;
@@ -90,7 +90,7 @@ fn flies_as_in_mujoco() {
         state.v.copy_from_slice(row.take(nv));
         let targets = row.take(driven);
         for _ in 0..60 {
-            physics.step(&mut state, targets, &[]);
+            simulator.step(&mut state, targets, &[]);
         }
         for (found, wanted) in state.q.iter().zip(row.take(nq)) {
             worst = worst.max((found - wanted).abs());
@@ -102,15 +102,15 @@ fn flies_as_in_mujoco() {
 }
 
 /// Free of weight: momentum and energy of all bodies.
-fn momentum(physics: &Simulator, q: &[f32]) -> (Vec3, Vec3, f32) {
+fn momentum(simulator: &Simulator, q: &[f32]) -> (Vec3, Vec3, f32) {
     let (mut linear, mut angular, mut energy) = (Vec3::ZERO, Vec3::ZERO, 0.0);
-    for (index, body) in physics.model.bodies.iter().enumerate() {
+    for (index, body) in simulator.model.bodies.iter().enumerate() {
         let origin = Vec3::from_slice(q);
-        let centre = physics.poses[index].at(body.com);
-        let velocity = physics.velocities[index].at(centre - origin);
-        let turn = glam::Mat3::from_quat(physics.poses[index].rotation);
-        let inertia = turn * body.inertia * turn.transpose();
-        let spin = physics.velocities[index].angular;
+        let centre = simulator.poses[index].at(body.com);
+        let velocity = simulator.velocities[index].at(centre - origin);
+        let rotation = glam::Mat3::from_quat(simulator.poses[index].rotation);
+        let inertia = rotation * body.inertia * rotation.transpose();
+        let spin = simulator.velocities[index].angular;
         linear += velocity * body.mass;
         angular += inertia * spin + centre.cross(velocity * body.mass);
         energy += 0.5 * (body.mass * velocity.length_squared() + spin.dot(inertia * spin));
@@ -135,7 +135,7 @@ fn drift(dt: f32) -> [Vec3; 3] {
         dt,
         ..SolverOptions::fast(&model)
     };
-    let mut physics = Simulator::new(model.clone(), settings);
+    let mut simulator = Simulator::new(model.clone(), settings);
     let mut state = SimulatorState::new(&model);
     for (index, v) in state.v.iter_mut().enumerate() {
         *v = ((index * 7 + 3) % 11) as f32 * 0.1 - 0.5;
@@ -149,16 +149,16 @@ fn drift(dt: f32) -> [Vec3; 3] {
             linear: Vec3::Z * (body.mass * 9.81),
         })
         .collect();
-    physics.forward(&state, &[], &lifts);
-    let start = momentum(&physics, &state.q);
+    simulator.forward(&state, &[], &lifts);
+    let start = momentum(&simulator, &state.q);
     for _ in 0..(1.0 / dt).round() as usize {
-        physics.step(&mut state, &[], &lifts);
+        simulator.step(&mut state, &[], &lifts);
     }
-    physics.forward(&state, &[], &lifts);
-    let end = momentum(&physics, &state.q);
+    simulator.forward(&state, &[], &lifts);
+    let end = momentum(&simulator, &state.q);
     assert_eq!(
-        physics.found.touches.len(),
-        DetectedContacts::default().touches.len()
+        simulator.contacts.points.len(),
+        DetectedContacts::default().points.len()
     );
     [
         (end.0 - start.0) / start.0.length(),

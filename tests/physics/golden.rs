@@ -1,11 +1,11 @@
-//! Golden files: what `tests/oracle` had MuJoCo compute.
+//! Golden files: what `tests/reference` had MuJoCo compute.
 
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
 /// Beside the scripts that made them, or where FOOTWORK_GOLDEN says that they were made anew.
 fn path(name: &str) -> PathBuf {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle");
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference");
     std::env::var_os("FOOTWORK_GOLDEN")
         .map_or(beside, PathBuf::from)
         .join(name)

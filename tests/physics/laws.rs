@@ -9,7 +9,7 @@ use footwork::physics::simulator::{Simulator, SUBSTEPS, SolverOptions, Simulator
 use footwork::physics::scenes;
 use footwork::physics::spatial::Spatial;
 use footwork::gpu::Device;
-use footwork::env::humanoid::Setup;
+use footwork::env::humanoid::batch::{self, SimulatorBatchConfig};
 use glam::{Quat, Vec3};
 use std::path::Path;
 use std::sync::Arc;
@@ -18,18 +18,18 @@ const HALF: Vec3 = Vec3::new(0.2, 0.2, 0.9);
 
 /// The free box alone on the ground.
 struct Block {
-    physics: Simulator,
+    simulator: Simulator,
     state: SimulatorState,
 }
 
 impl Block {
     fn new() -> Block {
-        let model = Arc::new(scenes::block());
+        let model = Arc::new(scenes::punching_box());
         let settings = SolverOptions::fast(&model);
         let mut state = SimulatorState::new(&model);
         state.q[2] = HALF.z;
         Block {
-            physics: Simulator::new(model, settings),
+            simulator: Simulator::new(model, settings),
             state,
         }
     }
@@ -37,9 +37,9 @@ impl Block {
     /// Leaning about the edge at x = 0.2, that edge on the ground.
     fn leaning(angle: f32) -> Block {
         let mut block = Block::new();
-        let turn = Quat::from_rotation_y(angle);
+        let rotation = Quat::from_rotation_y(angle);
         let edge = Vec3::new(HALF.x, 0.0, -HALF.z);
-        let place = Vec3::new(HALF.x, 0.0, 0.0) - turn * edge;
+        let position = Vec3::new(HALF.x, 0.0, 0.0) - rotation * edge;
         block.state.q[..3].copy_from_slice(&position.to_array());
         block.state.q[3..7].copy_from_slice(&[rotation.w, rotation.x, rotation.y, rotation.z]);
         block
@@ -52,11 +52,11 @@ impl Block {
             linear: Vec3::X * force,
         };
         for _ in 0..(seconds * 120.0) as usize {
-            self.physics.step(&mut self.state, &[], &[push]);
+            self.simulator.step(&mut self.state, &[], &[push]);
         }
     }
 
-    fn place(&self) -> Vec3 {
+    fn position(&self) -> Vec3 {
         Vec3::from_slice(&self.state.q)
     }
 
@@ -118,7 +118,7 @@ fn a_box_slides_at_the_friction_coefficient() {
 
 /// Two humanoids that stand so near that they touch, the second turned to the first.
 fn facing() -> (Arc<Model>, SimulatorState) {
-    let model = Arc::new(scenes::two());
+    let model = Arc::new(scenes::boxing_match());
     let mut state = SimulatorState::new(&model);
     let half = model.nq() / 2;
     state.q[0] = -0.12;
@@ -131,8 +131,8 @@ fn turned(model: &Model, state: &SimulatorState) -> Vec<f32> {
     let half_turn = Quat::from_rotation_z(std::f32::consts::PI);
     let half = model.nq() / 2;
     let mut q = state.q[half..].to_vec();
-    let place = half_turn * Vec3::from_slice(&q);
-    let turn = half_turn * quaternion(&q[3..]);
+    let position = half_turn * Vec3::from_slice(&q);
+    let rotation = half_turn * quaternion(&q[3..]);
     q[..3].copy_from_slice(&position.to_array());
     q[3..7].copy_from_slice(&[rotation.w, rotation.x, rotation.y, rotation.z]);
     q
@@ -141,18 +141,18 @@ fn turned(model: &Model, state: &SimulatorState) -> Vec<f32> {
 #[test]
 fn mirrored_characters_move_mirrored_and_push_alike() {
     let (model, mut state) = facing();
-    let mut physics = Simulator::new(model.clone(), SolverOptions::converged(&model));
-    let driven = model.driven() / 2;
+    let mut simulator = Simulator::new(model.clone(), SolverOptions::converged(&model));
+    let driven = model.nu() / 2;
     let swing: Vec<f32> = (0..driven)
         .map(|k| ((k * 5 + 2) % 7) as f32 * 0.1 - 0.3)
         .collect();
     let targets = [&swing[..], &swing].concat();
     let (half, mut met, mut worst) = (model.nq() / 2, 0, 0.0f32);
     for _ in 0..36 {
-        physics.step(&mut state, &targets, &[]);
+        simulator.step(&mut state, &targets, &[]);
         // By the laws of action and reaction, what the ground does not hold cancels.
         let mut ground = Vec3::ZERO;
-        for (force, &key) in physics.contact_forces().zip(&physics.found.keys) {
+        for (force, &key) in simulator.contact_forces().zip(&simulator.contacts.ids) {
             let [first, second] =
                 model.pairs[(key / 8) as usize].map(|geom| model.geoms[geom].body);
             match first {
@@ -163,7 +163,7 @@ fn mirrored_characters_move_mirrored_and_push_alike() {
                 }
             }
         }
-        let net: Vec3 = physics.body_forces().into_iter().sum();
+        let net: Vec3 = simulator.body_forces().into_iter().sum();
         let scale = ground.length().max(1.0);
         assert!(
             (net - ground).length() <= 1e-4 * scale,
@@ -186,10 +186,10 @@ fn mirrored_characters_move_mirrored_and_push_alike() {
     assert!(worst <= 1e-4, "{worst:e}");
 }
 
-fn setup(envs: usize) -> Setup {
+fn config(envs: usize) -> SimulatorBatchConfig {
     let model = Arc::new(humanoid());
-    Setup {
-        settings: SolverOptions::fast(&model),
+    SimulatorBatchConfig {
+        options: SolverOptions::fast(&model),
         envs,
         seed: 3,
         force_pairs: Vec::new(),
@@ -204,16 +204,16 @@ fn devices() -> [(&'static str, Device); 2] {
 
 /// A batch's states after some actions, world 5 being told nonsense in one of them.
 fn played(device: &Device, nonsense: f32) -> (Vec<f32>, u64) {
-    let setup = setup(8);
-    let mut simulation = setup.on(device).expect("it fits");
-    let mut targets = vec![0.1; setup.model.driven() * 8];
+    let config = config(8);
+    let mut worlds = batch::open(device, &config).expect("it fits");
+    let mut targets = vec![0.1; config.model.nu() * 8];
     for action in 0..6 {
         targets[3 * 8 + 5] = if action == 3 { nonsense } else { 0.1 };
-        simulation.set_targets(&targets);
-        simulation.step();
+        worlds.set_targets(&targets);
+        worlds.step();
     }
-    let diverged = simulation.counters().expect("counters").diverged;
-    (simulation.state().expect("state"), diverged)
+    let diverged = worlds.counters().expect("counters").diverged;
+    (worlds.state().expect("state"), diverged)
 }
 
 #[test]
@@ -224,12 +224,12 @@ fn a_nan_action_restarts_its_world_alone() {
         for nonsense in [f32::NAN, f32::INFINITY] {
             let (state, diverged) = played(&device, nonsense);
             assert_eq!(diverged, 1, "{name}, {nonsense}");
-            for (place, (found, wanted)) in state.iter().zip(&sound).enumerate() {
+            for (position, (found, wanted)) in state.iter().zip(&sound).enumerate() {
                 assert!(found.is_finite(), "{name}");
                 assert!(
-                    place % 8 == 5 || found == wanted,
+                    position % 8 == 5 || found == wanted,
                     "{name}: world {}",
-                    place % 8
+                    position % 8
                 );
             }
         }
@@ -241,16 +241,16 @@ fn equal_runs_end_equal_and_devices_agree_at_first() {
     let mut ends = Vec::new();
     for (name, device) in devices() {
         let run = || {
-            let mut simulation = setup(16).on(&device).expect("it fits");
+            let mut worlds = batch::open(&device, &config(16)).expect("it fits");
             let mut early = Vec::new();
             for action in 0..20 {
-                simulation.explore(0.5);
-                simulation.step();
+                worlds.draw_targets(0.5);
+                worlds.step();
                 if action == 2 {
-                    early = simulation.state().expect("state");
+                    early = worlds.state().expect("state");
                 }
             }
-            (early, simulation.state().expect("state"))
+            (early, worlds.state().expect("state"))
         };
         let (first, second) = (run(), run());
         assert_eq!(first.1, second.1, "{name}");
@@ -271,21 +271,21 @@ fn equal_runs_end_equal_and_devices_agree_at_first() {
 #[test]
 fn a_push_moves_a_body_and_a_restart_takes_it_back() {
     for (name, device) in devices() {
-        let setup = setup(4);
-        let model = &setup.model;
+        let config = config(4);
+        let model = &config.model;
         assert_eq!(model.joints[0].kind, JointKind::Free);
-        let mut simulation = setup.on(&device).expect("it fits");
+        let mut worlds = batch::open(&device, &config).expect("it fits");
         let mut external_forces = vec![0.0; 6 * model.bodies.len() * 4];
         // The root of world 2, along y.
         external_forces[4 * 4 + 2] = 400.0;
-        simulation.set_pushes(&external_forces);
-        simulation.step();
+        worlds.set_external_forces(&external_forces);
+        worlds.step();
         let at = |state: &[f32], field: usize, env: usize| state[field * 4 + env];
-        let state = simulation.state().expect("state");
+        let state = worlds.state().expect("state");
         assert!(at(&state, 1, 2) > at(&state, 1, 1) + 1e-3, "{name}");
-        let starts = setup.starts();
-        simulation.restart(&[0, 0, 1, 0], &starts);
-        let state = simulation.state().expect("state");
+        let starts = config.starts();
+        worlds.reset(&[0, 0, 1, 0], &starts);
+        let state = worlds.state().expect("state");
         for field in 0..state.len() / 4 {
             assert_eq!(
                 at(&state, field, 2),
@@ -310,12 +310,12 @@ fn contact_with_what_cannot_be_moved_breaks_nothing() {
         </body>
       </worldbody></mujoco>"#;
     let model = Arc::new(mjcf::parse(wheel, Path::new("wheel.xml")).expect("a model"));
-    let mut physics = Simulator::new(model.clone(), SolverOptions::fast(&model));
+    let mut simulator = Simulator::new(model.clone(), SolverOptions::fast(&model));
     let mut state = SimulatorState::new(&model);
     state.v[0] = 3.0;
     for _ in 0..120 {
-        physics.step(&mut state, &[], &[]);
-        assert_eq!(physics.found.keys.len(), 1);
+        simulator.step(&mut state, &[], &[]);
+        assert_eq!(simulator.contacts.ids.len(), 1);
         assert!(
             state.q[0].is_finite() && state.v[0].abs() <= 3.0,
             "{state:?}"

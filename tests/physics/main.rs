@@ -1,5 +1,5 @@
 //! The simulated body: the model reader, dynamics, contacts and the solver against MuJoCo (golden files
-//! made by `tests/oracle`) and against mechanics, and motion put into the body.
+//! made by `tests/reference`) and against mechanics, and motion put into the body.
 
 mod collide;
 mod contacts;

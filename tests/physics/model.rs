@@ -1,4 +1,4 @@
-//! Models from files: what MuJoCo makes of the same files (`tests/oracle/model.py`), what is refused,
+//! Models from files: what MuJoCo makes of the same files (`tests/reference/model.py`), what is refused,
 //! and several models in one world.
 
 mod assembled;

@@ -12,7 +12,6 @@ use footwork::physics::motion_clip::MotionClip;
 use footwork::physics::pose::Pose;
 use footwork::physics::spatial::Spatial;
 use footwork::motion::clip::Clip;
-use footwork::motion::synthetic;
 use footwork::motion::roles::Roles;
 use glam::{Quat, Vec3};
 
@@ -24,7 +23,7 @@ const LEG: f32 = 0.831416;
 
 /// A walk that nobody recorded.
 fn performed() -> (Clip, Roles) {
-    let (mut clips, roles) = synthetic::perform(3, 1.0);
+    let (mut clips, roles) = footwork::motion::synthetic::perform(3, 1.0);
     (clips.swap_remove(0), roles)
 }
 
@@ -46,7 +45,7 @@ impl Bodies<'_> {
         self.poses[self.model.body(name).expect("a humanoid's body")]
     }
 
-    fn place(&self, name: &str) -> Vec3 {
+    fn position(&self, name: &str) -> Vec3 {
         self.pose(name).position
     }
 
@@ -77,7 +76,7 @@ fn max_speed(model: &Model, motion: &MotionClip) -> f32 {
     let speeds = (0..motion.frames).flat_map(|frame| {
         let joints = model.joints.iter().filter(|joint| joint.kind != JointKind::Free);
         joints.map(move |joint| {
-            let v = &motion.v(frame)[joint.v..][..joint.kind.dofs()];
+            let v = &motion.v(frame)[joint.v..][..joint.kind.nv()];
             v.iter().map(|v| v * v).sum::<f32>().sqrt()
         })
     });
@@ -86,8 +85,8 @@ fn max_speed(model: &Model, motion: &MotionClip) -> f32 {
 
 /// The value that so large a share of all are no larger than.
 fn percentile(values: &mut [f32], share: f32) -> f32 {
-    let place = ((values.len() - 1) as f32 * share) as usize;
-    *values.select_nth_unstable_by(place, f32::total_cmp).1
+    let position = ((values.len() - 1) as f32 * share) as usize;
+    *values.select_nth_unstable_by(position, f32::total_cmp).1
 }
 
 fn humanoid_and(clip: &Clip, roles: &Roles) -> (Model, MotionClip) {

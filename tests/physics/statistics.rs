@@ -25,17 +25,17 @@ const MEASURES: [&str; 5] = [
 fn rollout(model: &Arc<Model>, seed: u32) -> [f32; MEASURES.len()] {
     let [head, left, right] =
         ["head", "left_foot", "right_foot"].map(|name| model.body(name).expect("a humanoid's"));
-    let mut physics = Simulator::new(model.clone(), SolverOptions::fast(model));
+    let mut simulator = Simulator::new(model.clone(), SolverOptions::fast(model));
     let mut state = SimulatorState::new(model);
     let (mut fallen, mut feet, mut all) = (SECONDS as f32, Vec::new(), Vec::new());
     let control_steps = 30 * SECONDS;
     for control in 0..control_steps {
         let draw = |k: usize| 0.3 * gaussian(random4(seed, control as u32, k as u32, 9));
-        let targets: Vec<f32> = (0..model.driven()).map(draw).collect();
+        let targets: Vec<f32> = (0..model.nu()).map(draw).collect();
         for sub in 0..SUBSTEPS {
-            physics.step(&mut state, &targets, &[]);
+            simulator.step(&mut state, &targets, &[]);
             let (mut on_feet, mut on_all) = (0.0, 0.0);
-            for (force, &key) in physics.contact_forces().zip(&physics.found.keys) {
+            for (force, &key) in simulator.contact_forces().zip(&simulator.contacts.ids) {
                 let [first, second] = model.pairs[(key / 8) as usize];
                 if model.geoms[first].body.is_none() {
                     let body = model.geoms[second].body;
@@ -49,7 +49,7 @@ fn rollout(model: &Arc<Model>, seed: u32) -> [f32; MEASURES.len()] {
             }
             feet.push(on_feet);
             all.push(on_all);
-            if fallen == SECONDS as f32 && physics.poses[head].position.z < FALLEN {
+            if fallen == SECONDS as f32 && simulator.poses[head].position.z < FALLEN {
                 fallen = (SUBSTEPS * control + sub + 1) as f32 / 120.0;
             }
         }

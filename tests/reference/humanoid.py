@@ -11,7 +11,7 @@ import numpy as np
 
 from golden import FOLDER
 
-MODEL = Path(__file__).parents[2] / "src" / "body" / "humanoid.xml"
+MODEL = Path(__file__).parents[2] / "src" / "physics" / "humanoid.xml"
 DT = 1 / 120
 
 
@@ -25,6 +25,8 @@ class Humanoid:
         option.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL
         option.solver = mujoco.mjtSolver.mjSOL_NEWTON
         option.iterations, option.tolerance = 200, 1e-14
+        # MuJoCo 4.0.0 factorises sparse matrices wrongly (its issue 3767).
+        option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
         option.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION
         if not contacts:
             option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT

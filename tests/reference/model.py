@@ -11,7 +11,7 @@ import numpy as np
 from golden import FOLDER
 
 HERE = Path(__file__).parent
-OURS = HERE.parents[1] / "src" / "body" / "humanoid.xml"
+OURS = HERE.parents[1] / "src" / "physics" / "humanoid.xml"
 MOCAP = Path(os.environ.get("FOOTWORK_MOCAP", HERE.parents[2] / "shared" / "mocap"))
 REFERENCE = MOCAP / "humanoid" / "ase" / "amp_humanoid.xml"
 KINDS = {0: "free", 1: "ball", 3: "hinge"}
@@ -69,9 +69,9 @@ class Facts:
             "parent": self.index.get(parent),
             "pose": self.seen(parent, m.body_pos[b], m.body_quat[b]),
             "mass": numbers(m.body_mass[b])[0],
-            "centre": numbers(m.body_ipos[b]),
+            "com": numbers(m.body_ipos[b]),
             "inertia": numbers(axes @ np.diag(m.body_inertia[b]) @ axes.T),
-            "looseness": numbers(m.body_invweight0[b, 0])[0],
+            "invweight0": numbers(m.body_invweight0[b, 0])[0],
         }
 
     def joint(self, j):
@@ -80,10 +80,10 @@ class Facts:
             "name": m.joint(j).name,
             "kind": KINDS[m.jnt_type[j]],
             "body": self.index[m.jnt_bodyid[j]],
-            "place": numbers(m.jnt_pos[j]),
+            "position": numbers(m.jnt_pos[j]),
             "axis": numbers(m.jnt_axis[j]),
             "range": numbers(m.jnt_range[j]) if m.jnt_limited[j] else None,
-            "softness": numbers([*m.jnt_solref[j], *m.jnt_solimp[j]]),
+            "solver_params": numbers([*m.jnt_solref[j], *m.jnt_solimp[j]]),
             "q": int(m.jnt_qposadr[j]),
             "v": int(m.jnt_dofadr[j]),
         }
@@ -95,7 +95,7 @@ class Facts:
             "body": self.index[m.dof_bodyid[v]],
             "parent": None if parent < 0 else parent,
             "armature": numbers(m.dof_armature[v])[0],
-            "looseness": numbers(m.dof_invweight0[v])[0],
+            "invweight0": numbers(m.dof_invweight0[v])[0],
             "drive": self.drive(v),
         }
 
@@ -121,8 +121,8 @@ class Facts:
             "size": numbers(m.geom_size[g][: SIZES[kind]]),
             "pose": self.seen(body, m.geom_pos[g], m.geom_quat[g]),
             "friction": numbers(m.geom_friction[g, 0])[0],
-            "slippery": bool(m.geom_condim[g] == 1),
-            "softness": numbers([*m.geom_solref[g], *m.geom_solimp[g]]),
+            "frictionless": bool(m.geom_condim[g] == 1),
+            "solver_params": numbers([*m.geom_solref[g], *m.geom_solimp[g]]),
         }
 
     def pairs(self):

@@ -71,7 +71,7 @@ impl Mass {
     pub fn read(element: &Element, settings: &MjcfSettings) -> Result<Mass> {
         let frame = Frame::read(element, settings)?;
         if element.word("pos").is_none() {
-            return Err(element.error("needs pos, the com of mass"));
+            return Err(element.error("needs pos, the centre of mass"));
         }
         let mass = match element.number("mass")? {
             Some(mass) if mass >= 0.0 => mass,

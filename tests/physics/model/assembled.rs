@@ -14,7 +14,7 @@ fn part<'a>(prefix: &'a str, model: &'a Model, x: f32) -> Part<'a> {
         prefix,
         model,
         position: Vec3::X * x,
-        rotation: 0.0,
+        yaw: 0.0,
     }
 }
 
@@ -48,12 +48,12 @@ fn two_humanoids() {
     let body = humanoid();
     let red = part("red/", &body, -1.0);
     let blue = Part {
-        rotation: FRAC_PI_2,
+        yaw: FRAC_PI_2,
         ..part("blue/", &body, 1.0)
     };
     let world = assemble(&[red, blue]);
     coherent(&world);
-    assert_eq!(world.driven(), 56);
+    assert_eq!(world.nu(), 56);
     let names: HashSet<&str> = world.bodies.iter().map(|body| body.name.as_str()).collect();
     assert_eq!(names.len(), 30);
     let [right, left] = ["red/left_hand", "blue/left_hand"].map(|name| world.body(name).unwrap());
@@ -69,9 +69,9 @@ fn two_humanoids() {
         assert_eq!((one.drive, one.depth), (other.drive, other.depth));
         assert_eq!(one.row + body.nm(), other.row);
     }
-    let place = Vec3::from_slice(&world.qpos0[43..]);
-    assert!(place.abs_diff_eq(Vec3::new(1.0, 0.0, body.start[2]), 1e-6));
-    let turn = Quat::from_rotation_z(FRAC_PI_2);
+    let position = Vec3::from_slice(&world.qpos0[43..]);
+    assert!(position.abs_diff_eq(Vec3::new(1.0, 0.0, body.qpos0[2]), 1e-6));
+    let rotation = Quat::from_rotation_z(FRAC_PI_2);
     assert_eq!(world.qpos0[46..50], [rotation.w, rotation.x, rotation.y, rotation.z]);
     // Twice a body's own, and each geom with each of the other's.
     assert_eq!(world.pairs.len(), 2 * body.pairs.len() + 18 * 18);
@@ -86,7 +86,7 @@ fn a_fastened_model_is_moved_with_its_place() {
         prefix: "a/",
         model: &model,
         position: Vec3::Y,
-        rotation: FRAC_PI_2,
+        yaw: FRAC_PI_2,
     };
     let world = assemble(&[moved]);
     assert!((world.bodies[0].position - Vec3::new(0.0, 2.0, 2.0)).length() < 1e-6);
@@ -102,7 +102,7 @@ fn coherent(world: &Model) {
     for (index, joint) in world.joints.iter().enumerate() {
         assert_eq!((joint.q, joint.v), (q, v));
         q += joint.kind.nq();
-        v += joint.kind.dofs();
+        v += joint.kind.nv();
         assert!(world.bodies[joint.body].joints.contains(&index));
         assert!(world.dofs[joint.v..v].iter().all(|dof| dof.joint == index));
         assert_eq!(

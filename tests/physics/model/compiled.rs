@@ -60,7 +60,7 @@ fn the_reference_humanoid_is_read_and_its_motors_are_drives() {
     let Some(path) = reference() else { return };
     let mut model = mjcf::read(&path).unwrap();
     let drive = |name: &str| {
-        let joint = model.joints.iter().detect_contacts(|joint| joint.name == name);
+        let joint = model.joints.iter().find(|joint| joint.name == name);
         model.dofs[joint.unwrap().v].drive.unwrap()
     };
     let expected = [
@@ -80,7 +80,7 @@ fn the_reference_humanoid_is_read_and_its_motors_are_drives() {
         };
         assert_eq!(drive(name), expected, "{name}");
     }
-    assert_eq!((model.driven(), model.nv()), (28, 34));
+    assert_eq!((model.nu(), model.nv()), (28, 34));
     // To MuJoCo, motors are no drives to a position.
     for dof in &mut model.dofs {
         dof.drive = None;
@@ -97,7 +97,7 @@ fn our_humanoid_is_as_designed() {
     let names: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
     assert_eq!(names, BODIES);
     assert_eq!(
-        (model.nv(), model.driven(), model.nq()),
+        (model.nv(), model.nu(), model.nq()),
         (34, 28, 43)
     );
     let masses = [
@@ -118,7 +118,7 @@ fn our_humanoid_is_as_designed() {
         let name = &model.joints[dof.joint].name;
         let (_, gains, armature) = expected
             .iter()
-            .detect_contacts(|(part, ..)| name.ends_with(part))
+            .find(|(part, ..)| name.ends_with(part))
             .unwrap();
         let drive = dof.drive.unwrap();
         assert_eq!(
@@ -190,8 +190,8 @@ fn compare_start(name: &str, model: &Model, fact: &Value) {
         let (q, fact) = (&model.qpos0[positions.clone()], &fact[positions]);
         match joint.kind {
             JointKind::Free => {
-                let turn = Quat::from_xyzw(q[4], q[5], q[6], q[3]);
-                pose(name, Vec3::from_slice(q), turn, &fact.into());
+                let rotation = Quat::from_xyzw(q[4], q[5], q[6], q[3]);
+                pose(name, Vec3::from_slice(q), rotation, &fact.into());
             }
             _ => close(name, q, &numbers(&fact.into())),
         }
@@ -204,7 +204,7 @@ fn compare_body(told: &str, model: &Model, index: usize, fact: &Value) {
     assert_eq!(body.parent, optional(&fact["parent"]), "{told}");
     pose(told, body.position, body.rotation, &fact["pose"]);
     close(told, &[body.mass], &[number(&fact["mass"])]);
-    close(told, &body.com.to_array(), &numbers(&fact["centre"]));
+    close(told, &body.com.to_array(), &numbers(&fact["com"]));
     close(told, &symmetric(&body.inertia), &numbers(&fact["inertia"]));
     assert!(
         alike(body.invweight0, &fact["invweight0"]),
@@ -243,11 +243,11 @@ fn compare_joint(told: &str, model: &Model, index: usize, fact: &Value) {
     if joint.kind == JointKind::Free {
         return;
     }
-    close(told, &joint.position.to_array(), &numbers(&fact["place"]));
+    close(told, &joint.position.to_array(), &numbers(&fact["position"]));
     close(
         told,
-        &softness(&joint.softness),
-        &numbers(&fact["softness"]),
+        &solver_params(&joint.solver_params),
+        &numbers(&fact["solver_params"]),
     );
     let range = fact["range"].as_array().map(|_| numbers(&fact["range"]));
     assert_eq!(joint.range.is_some(), range.is_some(), "{told}");
@@ -275,7 +275,7 @@ fn compare_dof(told: &str, model: &Model, index: usize, fact: &Value) {
     );
     let joint = &model.joints[dof.joint];
     assert!(
-        (joint.v..joint.v + joint.kind.dofs()).contains(&index),
+        (joint.v..joint.v + joint.kind.nv()).contains(&index),
         "{told}"
     );
     let drive = fact["drive"].as_array();
@@ -307,7 +307,7 @@ fn compare_geom(told: &str, model: &Model, index: usize, fact: &Value) {
     pose(told, geom.position, geom.rotation, &fact["pose"]);
     close(told, &[geom.friction], &[number(&fact["friction"])]);
     assert_eq!(geom.frictionless, fact["frictionless"], "{told}");
-    close(told, &softness(&geom.softness), &numbers(&fact["softness"]));
+    close(told, &solver_params(&geom.solver_params), &numbers(&fact["solver_params"]));
 }
 
 /// The same pairs, family after family, in each pair the simpler shape first.
@@ -356,12 +356,12 @@ fn pose(told: &str, position: Vec3, rotation: Quat, fact: &Value) {
     close(told, &position.to_array(), &fact[..3]);
     let wanted = Quat::from_xyzw(fact[4], fact[5], fact[6], fact[3]);
     // A quaternion and its opposite are the same turn.
-    let wanted = if turn.dot(wanted) < 0.0 {
+    let wanted = if rotation.dot(wanted) < 0.0 {
         -wanted
     } else {
         wanted
     };
-    close(told, &turn.to_array(), &wanted.to_array());
+    close(told, &rotation.to_array(), &wanted.to_array());
 }
 
 fn close(told: &str, found: &[f32], wanted: &[f32]) {
@@ -392,8 +392,8 @@ fn symmetric(matrix: &Mat3) -> [f32; 9] {
     matrix.to_cols_array()
 }
 
-fn softness(softness: &SolverParams) -> Vec<f32> {
-    [&softness.spring[..], &softness.impedance].concat()
+fn solver_params(params: &SolverParams) -> Vec<f32> {
+    [&params.solref[..], &params.solimp].concat()
 }
 
 fn number(value: &Value) -> f32 {

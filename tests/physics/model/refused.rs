@@ -265,7 +265,7 @@ fn files_that_are_no_text_or_too_large() {
     assert!(message.contains("cannot read"), "{message}");
 }
 
-const HUMANOID: &str = include_str!("../../../src/body/humanoid.xml");
+const HUMANOID: &str = include_str!("../../../src/physics/humanoid.xml");
 
 #[test]
 fn no_truncation_panics() {

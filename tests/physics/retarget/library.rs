@@ -4,7 +4,7 @@ use super::performed;
 use footwork::physics::humanoid::{humanoid, punching_box};
 use footwork::physics::kinematics::quaternion;
 use footwork::physics::model::Model;
-use footwork::physics::motion_library::{Error, MotionLibrary};
+use footwork::physics::motion_library::{MotionLibraryError, MotionLibrary};
 use footwork::kernels::rng::{random4, uniform01};
 use footwork::motion::bvh;
 use footwork::motion::clip::Clip;
@@ -33,7 +33,7 @@ fn library() -> (Arc<Model>, MotionLibrary) {
     (model, library.expect("three motions"))
 }
 
-fn load<P: AsRef<Path>>(paths: &[P], model: &Arc<Model>) -> Result<MotionLibrary, Error> {
+fn load<P: AsRef<Path>>(paths: &[P], model: &Arc<Model>) -> Result<MotionLibrary, MotionLibraryError> {
     MotionLibrary::load(paths, &ImportOptions::default(), model)
 }
 
@@ -100,7 +100,7 @@ fn between_frames_motion_is_continuous_and_at_frames_exact() {
     let hip = model
         .joints
         .iter()
-        .detect_contacts(|joint| joint.name == "left_hip")
+        .find(|joint| joint.name == "left_hip")
         .expect("a hip")
         .q;
     let [a, half, b] = [motion.q(10), &q, motion.q(11)].map(|q| quaternion(&q[hip..]));
@@ -148,7 +148,7 @@ fn what_makes_no_library_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let refused = |path: PathBuf| load(&[path], &model).expect_err("refused").to_string();
     let none = load::<PathBuf>(&[], &model).expect_err("refused");
-    assert!(matches!(none, Error::Empty));
+    assert!(matches!(none, MotionLibraryError::Empty));
     let error = refused(folder.path().to_path_buf());
     assert!(error.contains("no .bvh file in"), "{error}");
     assert!(refused(folder.path().join("missing.bvh")).contains("missing.bvh"));
@@ -173,11 +173,11 @@ fn what_makes_no_library_is_said() {
 
     let other = Arc::new(punching_box());
     let error = MotionLibrary::of(&clips, &roles, &other).expect_err("refused");
-    assert!(matches!(error, Error::Retarget { .. }), "{error}");
+    assert!(matches!(error, MotionLibraryError::Retarget { .. }), "{error}");
     let library = MotionLibrary::of(&clips, &roles, &model).expect("three motions");
     let motions = library.motions().to_vec();
     let error = MotionLibrary::new(motions, &other).expect_err("refused");
-    assert!(matches!(error, Error::Model { .. }), "{error}");
+    assert!(matches!(error, MotionLibraryError::Model { .. }), "{error}");
     for weights in [
         &[1.0, 2.0][..],
         &[1.0, -1.0, 1.0],
@@ -186,7 +186,7 @@ fn what_makes_no_library_is_said() {
         &[f32::MAX; 3],
     ] {
         let error = library.clone().qacc_whitened(weights).expect_err("refused");
-        let named = matches!(error, Error::Weights { .. } | Error::Weight { .. });
+        let named = matches!(error, MotionLibraryError::Weights { .. } | MotionLibraryError::Weight { .. });
         assert!(named, "{weights:?}: {error}");
     }
 }

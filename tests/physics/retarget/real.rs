@@ -78,7 +78,7 @@ fn real_recordings_move_the_humanoid() {
             let [left, right] = [roles.left_shoulder, roles.right_shoulder]
                 .map(|shoulder| wrist_of(shoulder).expect("a wrist"));
             let leg = LEG / units::leg(skeleton, &roles);
-            let arm = ARM / skeleton.bounding_radius(roles.left_shoulder, left);
+            let arm = ARM / skeleton.reach(roles.left_shoulder, left);
             let mut low = Vec::new();
             for frame in 0..motion.frames {
                 let bodies = Bodies::of(&model, motion.q(frame));
@@ -113,7 +113,7 @@ fn real_recordings_move_the_humanoid() {
         }
         let of = |off: &mut [f32], share| 100.0 * percentile(off, share);
         println!(
-            "{folder}: ankles off by {:.1} cm (95 %: {:.1}), wrists by {:.1} (95 %: {:.1}), joints turn at most {speed:.1} rad/s",
+            "{folder}: ankles off by {:.1} cm (95 %: {:.1}), wrists by {:.1} (95 %: {:.1}), joints rotation at most {speed:.1} rad/s",
             of(&mut ankle, 0.5),
             of(&mut ankle, 0.95),
             of(&mut wrist, 0.5),
@@ -131,7 +131,7 @@ fn real_t_poses_have_horizontal_arms() {
     let model = humanoid();
     for file in T_POSES {
         let recording = bvh::read(&mocap.join(file)).expect("a recording");
-        let roles = Roles::detect_contacts(&recording.skeleton).expect("a person");
+        let roles = Roles::find(&recording.skeleton).expect("a person");
         let mut clip = recording.into_clip(file, 0.01, 0..1);
         // Two frames are the least that move.
         clip.positions.push(clip.positions[0]);
@@ -141,8 +141,8 @@ fn real_t_poses_have_horizontal_arms() {
         let bodies = Bodies::of(&model, motion.q(0));
         let across = bodies.position("left_hand") - bodies.position("right_hand");
         for side in ["left", "right"] {
-            let place = |part: &str| bodies.position(&format!("{side}_{part}"));
-            let arm = place("hand") - place("upper_arm");
+            let position = |part: &str| bodies.position(&format!("{side}_{part}"));
+            let arm = position("hand") - position("upper_arm");
             let fall = (arm.z / arm.length()).asin().to_degrees();
             println!("{file}, {side}: {fall:.1} degrees above level");
             assert!(fall.abs() < 12.0, "{file}, {side}: {fall}");

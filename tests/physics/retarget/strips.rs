@@ -11,11 +11,11 @@ fn a_motion_makes_two_film_strips() {
     let (clip, roles) = performed();
     let (model, motion) = humanoid_and(&clip, &roles);
     let folder = tempfile::tempdir().expect("a folder");
-    let place = folder.path().join("made/for/it");
-    let files = strips(&gpu, &Arc::new(model), &motion, &place).expect("two strips");
+    let position = folder.path().join("made/for/it");
+    let files = strips(&gpu, &Arc::new(model), &motion, &position).expect("two strips");
     for (file, what) in files.iter().zip(["replayed", "driven"]) {
         let named = format!("synthetic_000-{what}.png");
-        assert_eq!(file, &place.join(named));
+        assert_eq!(file, &position.join(named));
         let picture = std::fs::read(file).expect("a picture");
         assert!(picture.len() > 50_000, "{what}: {} bytes", picture.len());
     }

@@ -6,8 +6,8 @@ use footwork::physics::humanoid::{humanoid, punching_box};
 use footwork::physics::integrate::drift;
 use footwork::physics::kinematics::quaternion;
 use footwork::physics::model::{JointKind, Model};
-use footwork::physics::motion_clip::targets;
-use footwork::physics::retarget::{Error, retarget};
+use footwork::physics::motion_clip::pd_targets;
+use footwork::physics::retarget::{RetargetError, retarget};
 use footwork::motion::clip::Clip;
 use footwork::motion::mirror::mirror;
 use footwork::motion::units;
@@ -104,15 +104,15 @@ fn limbs_go_where_the_performers_go_and_feet_stand_on_the_ground() {
             ("right", roles.right_hip, roles.right_foot),
         ] {
             let leg = UPRIGHT * (at[foot] - at[hip]) * scale;
-            let place = |part: &str| bodies.position(&format!("{side}_{part}"));
-            off.push((place("foot") - place("thigh")).distance(leg));
+            let position = |part: &str| bodies.position(&format!("{side}_{part}"));
+            off.push((position("foot") - position("thigh")).distance(leg));
         }
         low.push(bodies.lowest());
     }
     let (off, low) = (percentile(&mut off, 1.0), percentile(&mut low, 0.01));
     let max_speed = max_speed(&model, &motion);
     println!(
-        "ankles are at most {:.1} cm off; 99 % of frames are above {:.1} cm; joints turn at most {max_speed:.1} rad/s",
+        "ankles are at most {:.1} cm off; 99 % of frames are above {:.1} cm; joints rotation at most {max_speed:.1} rad/s",
         100.0 * off,
         100.0 * low
     );
@@ -135,11 +135,11 @@ fn a_mirrored_clip_gives_a_mirrored_body() {
                 _ => body.name.clone(),
             };
             let (one, other) = (bodies.pose(&body.name), seen.pose(&other));
-            let place = other.position * Vec3::new(1.0, -1.0, 1.0);
-            let turn = Quat::from_xyzw(-other.rotation.x, other.rotation.y, -other.rotation.z, other.rotation.w);
-            assert!(one.position.distance(place) < 1e-3, "{frame}, {}", body.name);
+            let position = other.position * Vec3::new(1.0, -1.0, 1.0);
+            let rotation = Quat::from_xyzw(-other.rotation.x, other.rotation.y, -other.rotation.z, other.rotation.w);
+            assert!(one.position.distance(position) < 1e-3, "{frame}, {}", body.name);
             assert!(
-                one.rotation.dot(turn).abs() > 1.0 - 1e-5,
+                one.rotation.dot(rotation).abs() > 1.0 - 1e-5,
                 "{frame}, {}",
                 body.name
             );
@@ -234,8 +234,8 @@ fn joints_stay_within_their_ranges() {
 fn drives_targets_are_what_the_joints_do() {
     let (clip, roles) = performed();
     let (model, motion) = humanoid_and(&clip, &roles);
-    let wanted = targets(&model, motion.q(40));
-    assert_eq!(wanted.len(), model.driven());
+    let wanted = pd_targets(&model, motion.q(40));
+    assert_eq!(wanted.len(), model.nu());
     // The humanoid's joints, but for the free one, are all driven.
     for joint in &model.joints[1..] {
         let q = &motion.q(40)[joint.q..];
@@ -243,8 +243,8 @@ fn drives_targets_are_what_the_joints_do() {
         match joint.kind {
             JointKind::Hinge => assert_eq!(wanted[0], q[0]),
             _ => {
-                let turn = Quat::from_scaled_axis(Vec3::from_slice(wanted));
-                assert!(turn.dot(quaternion(q)).abs() > 1.0 - 1e-6, "{}", joint.name);
+                let rotation = Quat::from_scaled_axis(Vec3::from_slice(wanted));
+                assert!(rotation.dot(quaternion(q)).abs() > 1.0 - 1e-6, "{}", joint.name);
             }
         }
     }
@@ -255,13 +255,13 @@ fn what_cannot_be_done_is_said() {
     let (clip, roles) = performed();
     let refused = |clip: &Clip, model: &Model| retarget(clip, &roles, model).expect_err("refused");
     let error = refused(&clip, &punching_box());
-    assert!(matches!(error, Error::Model { .. }));
+    assert!(matches!(error, RetargetError::Model { .. }));
     assert!(error.to_string().contains("'pelvis'"), "{error}");
 
     let mut short = clip.clone();
     short.positions.truncate(1);
     let error = refused(&short, &humanoid());
-    assert!(matches!(error, Error::Short { frames: 1, .. }), "{error}");
+    assert!(matches!(error, RetargetError::Short { frames: 1, .. }), "{error}");
 
     let mut kneeless = clip.clone();
     let knee = kneeless.skeleton.parents[roles.left_foot].expect("a knee");
