@@ -4,7 +4,7 @@ use super::Usage;
 use super::run::Run;
 use anyhow::Result;
 use clap::Args;
-use footwork::train::task::EvalOptions;
+use footwork::train::evaluation::EvalOptions;
 use std::path::PathBuf;
 
 #[derive(Args)]

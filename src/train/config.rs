@@ -259,6 +259,22 @@ impl Config {
         different(&decisive(table(self)), &decisive(other), "")
     }
 
+    /// Refuses rollouts in which an environment could be truncated more than once: there is room for
+    /// one final observation.
+    pub(super) fn check_rollout(&self, max_steps: u32) -> Result<(), ConfigError> {
+        let rollout = self.ppo.rollout_length;
+        if rollout <= max_steps as usize {
+            return Ok(());
+        }
+        Err(ConfigError::Value {
+            key: "ppo.rollout_length",
+            value: rollout.to_string(),
+            why: format!(
+                "a rollout may hold one truncation of an environment: at most the task's max_steps, {max_steps}"
+            ),
+        })
+    }
+
     /// Refuses what cannot work, whatever the task.
     pub(super) fn check(&self) -> Result<(), ConfigError> {
         const LONG: u64 = 1_000_000_000_000_000;

@@ -1,4 +1,4 @@
-//! What an evaluation found, whatever the task.
+//! What may be asked of an evaluation, and what it found, whatever the task.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -19,4 +19,22 @@ impl Evaluation {
     pub fn measure(&self, name: &str) -> f64 {
         self.measures.get(name).copied().unwrap_or_default()
     }
+}
+
+/// What `footwork eval` may be asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EvalOptions {
+    pub episodes: usize,
+    /// A scripted controller beside the policy.
+    pub baseline: bool,
+    /// Episodes to plan with full knowledge.
+    pub planner: usize,
+    /// The quality of the whole body's motion.
+    pub motion_quality: bool,
+}
+
+/// A report for people and one for programs.
+pub struct EvalReport {
+    pub text: String,
+    pub json: serde_json::Value,
 }

@@ -7,8 +7,7 @@ use super::evaluate::{LocomotionReport, evaluate, hardest};
 use super::planner::plan;
 use super::rendered_frames::rendered_frames;
 use super::eval_report::{baseline_json, comparison, motion_quality};
-use super::evaluation::Evaluation;
-use super::task::{EvalOptions, EvalReport, check_rollout};
+use super::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::env::{EnvBatch, EnvSpec};
 use crate::env::locomotion::{EnvConfig, LEVELS, LocomotionTask};
 use crate::gpu::Device;
@@ -69,7 +68,7 @@ fn check_weights(weights: &Weights) -> Result<(), ConfigError> {
 /// # Errors
 /// A rollout is too long for it.
 pub fn rollout_spec(task: LocomotionTask, config: &Config) -> Result<EnvSpec, ConfigError> {
-    check_rollout(config, task.max_steps())?;
+    config.check_rollout(task.max_steps())?;
     let envs = EnvConfig {
         task,
         envs: config.ppo.envs,

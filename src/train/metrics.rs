@@ -1,15 +1,11 @@
-//! What every update writes down: a line of `metrics.jsonl`, and TensorBoard's scalars.
+//! The metrics of an update: a line of `metrics.jsonl`.
 
 use super::evaluation::Evaluation;
-#[cfg(feature = "report")]
-use super::tensorboard::TensorBoard;
 use crate::rl::Iteration;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// An update.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -82,14 +78,6 @@ impl UpdateMetrics {
     }
 }
 
-/// Appends to a run's metrics and events.
-pub struct MetricsWriter {
-    lines: File,
-    path: PathBuf,
-    #[cfg(feature = "report")]
-    events: TensorBoard,
-}
-
 /// The rows of a `metrics.jsonl` up to a number of steps. Lines that a crash cut short end the
 /// reading.
 pub fn read(path: &Path, up_to: u64) -> Result<Vec<UpdateMetrics>> {
@@ -106,36 +94,4 @@ pub fn read(path: &Path, up_to: u64) -> Result<Vec<UpdateMetrics>> {
         .lines()
         .map_while(|line| serde_json::from_str::<UpdateMetrics>(line).ok());
     Ok(rows.take_while(|row| row.steps <= up_to).collect())
-}
-
-impl MetricsWriter {
-    /// Starts over with the rows that are known; new ones follow.
-    pub fn open(folder: &Path, known: &[UpdateMetrics]) -> Result<Self> {
-        let path = folder.join("metrics.jsonl");
-        let mut text = String::new();
-        for row in known {
-            text += &serde_json::to_string(row)?;
-            text.push('\n');
-        }
-        crate::container::write_whole(&path, text.as_bytes())?;
-        let lines = File::options().append(true).open(&path);
-        let lines = lines.with_context(|| format!("cannot write {}", path.display()))?;
-        Ok(MetricsWriter {
-            lines,
-            path,
-            #[cfg(feature = "report")]
-            events: TensorBoard::open(folder, known)?,
-        })
-    }
-
-    pub fn write(&mut self, row: &UpdateMetrics) -> Result<()> {
-        let mut line = serde_json::to_string(row)?;
-        line.push('\n');
-        self.lines
-            .write_all(line.as_bytes())
-            .with_context(|| format!("cannot write {}", self.path.display()))?;
-        #[cfg(feature = "report")]
-        self.events.write(row)?;
-        Ok(())
-    }
 }

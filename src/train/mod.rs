@@ -15,6 +15,7 @@ pub mod evaluation;
 pub mod figures;
 pub mod locomotion;
 pub mod metrics;
+pub mod metrics_writer;
 pub mod observer;
 pub mod planner;
 pub mod rendered_frames;

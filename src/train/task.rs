@@ -5,7 +5,7 @@
 //! loaded.
 
 use super::config::{Config, ConfigError, Preset, TaskPreset};
-use super::evaluation::Evaluation;
+use super::evaluation::{EvalOptions, EvalReport, Evaluation};
 #[cfg(feature = "report")]
 use super::metrics::UpdateMetrics;
 #[cfg(feature = "report")]
@@ -61,22 +61,6 @@ impl TaskEntry {
         ActorCritic::new(&config.ppo.network, &spec.observation, spec.action)?;
         Ok(spec)
     }
-}
-
-/// Refuses rollouts that may hold more than the one truncation of an environment that there is room for.
-///
-/// # Errors
-/// [`ConfigError::Value`].
-pub fn check_rollout(config: &Config, max_steps: u32) -> Result<(), ConfigError> {
-    let rollout = config.ppo.rollout_length;
-    if rollout <= max_steps as usize {
-        return Ok(());
-    }
-    Err(ConfigError::Value {
-        key: "ppo.rollout_length",
-        value: rollout.to_string(),
-        why: format!("a rollout may hold one truncation of an environment: at most max_steps, {max_steps}"),
-    })
 }
 
 /// A task with its data, and what the user should know of how it was loaded.
@@ -144,24 +128,6 @@ pub trait Task: Send + Sync {
     fn motion(&self, _policy: &Policy, _episode: u32) -> Option<(Arc<Model>, MotionClip)> {
         None
     }
-}
-
-/// What `footwork eval` may be asked for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct EvalOptions {
-    pub episodes: usize,
-    /// A scripted controller beside the policy.
-    pub baseline: bool,
-    /// Episodes to plan with full knowledge.
-    pub planner: usize,
-    /// The quality of the whole body's motion.
-    pub motion_quality: bool,
-}
-
-/// A report for people and one for programs.
-pub struct EvalReport {
-    pub text: String,
-    pub json: serde_json::Value,
 }
 
 /// Something was asked of a task that it does not have.

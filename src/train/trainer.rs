@@ -3,7 +3,8 @@
 use super::checkpoint::{Checkpoint, Header};
 use super::config::{Config, VERSION};
 use super::evaluation::Evaluation;
-use super::metrics::{self, MetricsWriter, UpdateMetrics};
+use super::metrics::{self, UpdateMetrics};
+use super::metrics_writer::MetricsWriter;
 use super::observer::Observer;
 use super::run_dir::{RunDir, Summary};
 use super::state::TrainerState;

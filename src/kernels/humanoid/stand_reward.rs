@@ -55,7 +55,7 @@ pub const STATS: [&str; FIELDS - SUMS] = [
     "successes",
     "steps",
     "returns",
-    "falls",
+    "fall",
     "uprightness",
 ];
 

@@ -9,10 +9,10 @@ use crate::nn::Policy;
 use crate::rl::ppo::Ppo;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, table, within};
 use crate::train::eval_report::{levels, levels_json};
-use crate::train::evaluation::Evaluation;
+use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::locomotion::{Locomotion, rollout_spec, split, with_weights};
 use crate::train::task::{
-    Ablation, EvalOptions, EvalReport, Loaded, Measure, Task, TaskEntry, Variant,
+    Ablation, Loaded, Measure, Task, TaskEntry, Variant,
 };
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};

@@ -8,10 +8,10 @@ use crate::motion::normalise::Weights;
 use crate::nn::Policy;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, within};
 use crate::train::evaluate::hardest;
-use crate::train::evaluation::Evaluation;
+use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::locomotion::{Locomotion, rollout_spec, split, with_weights};
 use crate::train::task::{
-    EvalOptions, EvalReport, Loaded, Task, TaskEntry, Unsupported,
+    Loaded, Task, TaskEntry, Unsupported,
 };
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};

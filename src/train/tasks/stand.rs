@@ -13,9 +13,9 @@ use crate::physics::motion_clip::MotionClip;
 use crate::physics::scenes;
 use crate::rl::ppo::Ppo;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
-use crate::train::evaluation::Evaluation;
+use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::task::{
-    EvalOptions, EvalReport, Loaded, Task, TaskEntry, Unsupported, check_rollout,
+    Loaded, Task, TaskEntry, Unsupported,
 };
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
@@ -65,7 +65,7 @@ fn preset(_: Preset) -> TaskPreset {
 fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
     let stand: Stand = settings(&config.task.settings)?;
     stand.check().map_err(ConfigError::Settings)?;
-    check_rollout(config, stand.episode_steps())?;
+    config.check_rollout(stand.episode_steps())?;
     match config.data {
         Some(_) => Err(ConfigError::Settings(
             "the task `stand` uses no motion: leave out `data`".into(),

@@ -275,7 +275,7 @@ fn a_diverged_world_fails_and_begins_anew() {
         assert!(seen.iter().all(|value| value.is_finite() && value.abs() < 100.0));
         assert_eq!(rollout.terminations()[2], termination::FAILED);
         assert_eq!(rollout.reward.read(&device).unwrap()[2], 0.0);
-        assert_eq!(sums(&device, batch.as_mut()).sum("falls"), 1.0);
+        assert_eq!(sums(&device, batch.as_mut()).sum("fall"), 1.0);
     }
 }
 
