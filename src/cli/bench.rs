@@ -150,7 +150,8 @@ fn speed(per_s: f64) -> String {
         1e9.. => format!("{:.1} G", per_s / 1e9),
         1e6.. => format!("{:.1} M", per_s / 1e6),
         1e4.. => format!("{:.0} k", per_s / 1e3),
-        _ => format!("{per_s:.0}"),
+        1e2.. => format!("{per_s:.0}"),
+        _ => format!("{per_s:.2}"),
     }
 }
 

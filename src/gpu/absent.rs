@@ -1,7 +1,7 @@
 //! The GPU of a build without the feature `gpu`: types that no value has. Code for GPUs compiles
 //! against them and is dropped.
 
-use super::device::{INSTEAD, NoAdapter};
+use super::no_adapter::{INSTEAD, NoAdapter};
 use super::shader::Shader;
 use bytemuck::Pod;
 use std::convert::Infallible;

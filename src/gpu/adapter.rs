@@ -1,6 +1,6 @@
 //! A graphics adapter, opened for burn and for this program's kernels alike.
 
-use super::device::{INSTEAD, NoAdapter};
+use super::no_adapter::{INSTEAD, NoAdapter};
 use burn::backend::Wgpu;
 use burn::tensor::wgpu::{MemoryConfiguration, WgpuBackend, WgpuInitError, WgpuSetup};
 use burn::tensor::{Device as TensorDevice, DeviceKind, Tensor};

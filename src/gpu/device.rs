@@ -1,6 +1,7 @@
 //! Which adapter or processor runs the program.
 
 use super::Gpu;
+use super::no_adapter::NoAdapter;
 use serde::{Deserialize, Serialize};
 
 /// What the user requests.
@@ -18,22 +19,6 @@ pub enum Choice {
     /// Mesa's software Vulkan: the GPU path without a GPU, for tests.
     Lavapipe,
 }
-
-/// No adapter of the requested kind.
-#[derive(Debug, thiserror::Error)]
-#[error(
-    "no {wanted} found: {remedy}{instead}"
-)]
-pub struct NoAdapter {
-    pub(super) wanted: &'static str,
-    /// What would bring one.
-    pub(super) remedy: &'static str,
-    /// What else there is to do.
-    pub(super) instead: &'static str,
-}
-
-/// Networks and environments need no adapter.
-pub(super) const INSTEAD: &str = ", or use `--device cpu`";
 
 /// An opened device.
 #[derive(Clone)]

@@ -10,6 +10,7 @@
 
 pub mod array;
 pub mod device;
+mod no_adapter;
 pub mod shader;
 
 #[cfg(feature = "gpu")]
@@ -32,4 +33,5 @@ pub use array::Array;
 #[cfg(feature = "gpu")]
 pub use buffer::{Argument, Buffer, Shared};
 pub use device::{Choice, Device};
+pub use no_adapter::NoAdapter;
 pub use shader::groups;

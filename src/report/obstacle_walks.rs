@@ -14,7 +14,7 @@ mod maps;
 mod symbols;
 
 use episode::seconds;
-pub use episode::{CELLS, End, Episode, Map, Obstacle};
+pub use episode::{CELLS, End, DrawnEpisode, Map, Obstacle};
 use symbols::{OBSTACLE, SEEN, WAY, draw_arrow, draw_rectangle, turned};
 
 /// Half of what a panel shows, in metres: the square in which obstacles begin, and as
@@ -44,7 +44,7 @@ const EPISODE: f64 = SIDE + BESIDE + maps::SIDE;
 /// # Errors
 ///
 /// If the picture cannot be drawn or written.
-pub fn draw(path: &std::path::Path, episodes: &[Episode], step_s: f32) -> Result<(), ReportError> {
+pub fn draw(path: &std::path::Path, episodes: &[DrawnEpisode], step_s: f32) -> Result<(), ReportError> {
     let columns = episodes.len().clamp(1, COLUMNS);
     let rows = episodes.len().div_ceil(COLUMNS).max(1);
     let width = LEFT + columns as f64 * (EPISODE + GAP) - GAP + RIGHT;
@@ -77,7 +77,7 @@ fn plot(left: f64, top: f64) -> Plot {
 
 fn draw_episode(
     canvas: &mut Canvas<'_>,
-    episode: &Episode,
+    episode: &DrawnEpisode,
     step_s: f32,
     (left, top): Pixel,
 ) -> Result<(), ReportError> {
@@ -139,7 +139,7 @@ impl Scene<'_> {
     fn draw_obstacles(
         &self,
         canvas: &mut Canvas<'_>,
-        episode: &Episode,
+        episode: &DrawnEpisode,
     ) -> Result<(), ReportError> {
         for obstacle in &episode.obstacles {
             self.draw_box(canvas, obstacle, OBSTACLE)?;
@@ -180,7 +180,7 @@ impl Scene<'_> {
         Ok(())
     }
 
-    fn draw_target(&self, canvas: &mut Canvas<'_>, episode: &Episode) -> Result<(), ReportError> {
+    fn draw_target(&self, canvas: &mut Canvas<'_>, episode: &DrawnEpisode) -> Result<(), ReportError> {
         let centre = self.place(episode.target);
         if !self.inside(centre) {
             return Ok(());
@@ -190,7 +190,7 @@ impl Scene<'_> {
     }
 
     /// The outline of the ground that the maps cover.
-    fn draw_covered(&self, canvas: &mut Canvas<'_>, episode: &Episode) -> Result<(), ReportError> {
+    fn draw_covered(&self, canvas: &mut Canvas<'_>, episode: &DrawnEpisode) -> Result<(), ReportError> {
         let Some(&seen) = episode.points.get(episode.seen) else {
             return Ok(());
         };
@@ -206,7 +206,7 @@ impl Scene<'_> {
     fn draw_walk(
         &self,
         canvas: &mut Canvas<'_>,
-        episode: &Episode,
+        episode: &DrawnEpisode,
         step_s: f32,
     ) -> Result<(), ReportError> {
         let line: Vec<Pixel> = episode.points.iter().map(|&at| self.place(at)).collect();
@@ -230,7 +230,7 @@ impl Scene<'_> {
 }
 
 /// The obstacle that ended the episode: the one nearest to its end.
-fn hit(episode: &Episode) -> Option<&Obstacle> {
+fn hit(episode: &DrawnEpisode) -> Option<&Obstacle> {
     let end = episode.points.last()?;
     let gap = |obstacle: &&Obstacle| {
         let apart =
@@ -267,7 +267,7 @@ fn draw_end(canvas: &mut Canvas<'_>, at: Pixel, end: End) -> Result<(), ReportEr
 fn draw_heading(
     canvas: &mut Canvas<'_>,
     plot: &Plot,
-    episode: &Episode,
+    episode: &DrawnEpisode,
     step_s: f32,
 ) -> Result<(), ReportError> {
     let PlotArea { left, top, .. } = plot.frame;

@@ -1,13 +1,13 @@
 //! `obstacle_walks`: the view from above, and the maps beside it.
 
 use super::drawn;
-use footwork::report::obstacle_walks::{self, CELLS, End, Episode, Obstacle};
+use footwork::report::obstacle_walks::{self, CELLS, End, DrawnEpisode, Obstacle};
 
 const BOX: [u8; 3] = [0xe0, 0xe3, 0xe8];
 const BLOCKED: [u8; 3] = [0x8b, 0x97, 0xa8];
 
 /// Boxes on a grid, each on its way for 0.7 m, and a walk of `steps` steps.
-fn episode(boxes: usize, steps: usize, end: End) -> Episode {
+fn episode(boxes: usize, steps: usize, end: End) -> DrawnEpisode {
     let obstacle = |index: usize| {
         let (x, z) = ((index % 20) as f32 - 9.5, (index / 20) as f32 - 9.5);
         Obstacle {
@@ -19,7 +19,7 @@ fn episode(boxes: usize, steps: usize, end: End) -> Episode {
     let time = |step: usize| 0.2 * step as f32;
     let mut maps = [[[0; CELLS]; CELLS]; 2];
     maps[0][12][9] = 255;
-    Episode {
+    DrawnEpisode {
         title: "level 9".to_owned(),
         obstacles: (0..boxes).map(obstacle).collect(),
         points: (0..=steps)
@@ -55,7 +55,7 @@ fn every_episode_has_its_panel_and_its_maps() {
 
 #[test]
 fn the_view_from_above_and_the_maps_are_not_mirrored() {
-    let mut episode = Episode {
+    let mut episode = DrawnEpisode {
         // Relative to the start 8 m along x and 5 m along z: right of it, and below.
         points: vec![[100.0, -50.0]],
         obstacles: vec![Obstacle {
@@ -63,7 +63,7 @@ fn the_view_from_above_and_the_maps_are_not_mirrored() {
             end: [108.0, -45.0],
             half: [1.0, 1.0],
         }],
-        ..Episode::default()
+        ..DrawnEpisode::default()
     };
     // Ahead and to the left, which is up and on the left.
     episode.maps[0][CELLS - 1][CELLS - 1] = 255;
@@ -95,7 +95,7 @@ fn the_view_from_above_and_the_maps_are_not_mirrored() {
 
 #[test]
 fn episodes_survive_whatever_they_are_given() {
-    let far = Episode {
+    let far = DrawnEpisode {
         points: vec![[0.0, 0.0], [1e30, -1e30], [3.0, f32::MAX]],
         target: [1e30, 0.0],
         obstacles: vec![Obstacle {
@@ -107,18 +107,18 @@ fn episodes_survive_whatever_they_are_given() {
         heading: [1e30, -1e30],
         ..episode(0, 0, End::Collided)
     };
-    let lost = Episode {
+    let lost = DrawnEpisode {
         points: vec![[0.0, 0.0], [f32::NAN, 1.0], [1.0, f32::INFINITY]],
         target: [f32::NAN; 2],
         heading: [f32::NAN, 0.0],
         ..episode(3, 0, End::Collided)
     };
-    let unseen = Episode {
+    let unseen = DrawnEpisode {
         seen: usize::MAX,
         ..episode(1, 3, End::Reached)
     };
     let episodes = [
-        Episode::default(),
+        DrawnEpisode::default(),
         episode(0, 0, End::Collided),
         episode(400, 300, End::Reached),
         far,

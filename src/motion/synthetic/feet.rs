@@ -25,7 +25,7 @@ const PASS: f32 = 0.11;
 
 /// A foot at one moment.
 #[derive(Clone, Copy, Debug)]
-pub struct Foot {
+pub struct FootState {
     pub ankle: Vec3,
     pub rotation: Quat,
     /// The toes' bend upwards against the foot (rad).
@@ -53,7 +53,7 @@ fn roll(track: &Track, stance: &Stance) -> Roll {
 }
 
 /// The foot of `side` at `time`, from its stances and the other foot's.
-pub fn foot(track: &Track, stances: &[Stance], others: &[Stance], side: usize, time: f32) -> Foot {
+pub fn foot(track: &Track, stances: &[Stance], others: &[Stance], side: usize, time: f32) -> FootState {
     let landed = stances.partition_point(|stance| stance.from <= time);
     let current = &stances[landed.max(1) - 1];
     match stances.get(landed) {
@@ -73,7 +73,7 @@ pub fn foot(track: &Track, stances: &[Stance], others: &[Stance], side: usize, t
     }
 }
 
-fn stand(track: &Track, stance: &Stance, time: f32) -> Foot {
+fn stand(track: &Track, stance: &Stance, time: f32) -> FootState {
     let roll = roll(track, stance);
     let length = stance.to - stance.from;
     let landing = LANDING.min(0.25 * length);
@@ -82,7 +82,7 @@ fn stand(track: &Track, stance: &Stance, time: f32) -> Foot {
     let up = ((time - stance.to + push) / push).clamp(0.0, 1.0);
     // Eased in only: the foot leaves the ground while still turning.
     let pitch = roll.strike * down + roll.push * up * up;
-    Foot {
+    FootState {
         planted: roll.strike <= 0.0 || down == 0.0,
         ..posed(stance.place, stance.yaw, pitch, 0.0, 0.0)
     }
@@ -98,7 +98,7 @@ struct Swing<'a> {
 
 impl Swing<'_> {
     /// The foot at share `s` of the swing.
-    fn at(&self, track: &Track, s: f32) -> Foot {
+    fn at(&self, track: &Track, s: f32) -> FootState {
         let (before, after) = (self.before, self.after);
         let way = smooth(0.0, 1.0, s);
         let yaw = mix(before.yaw, after.yaw, way);
@@ -131,7 +131,7 @@ impl Swing<'_> {
 
 /// A foot over `place` (its ball's, when flat), its sole's lowest point `height` metres up.
 /// `air` (0..1) rounds the change between pivoting on the heel and on the ball.
-fn posed(place: Vec3, yaw: f32, pitch: f32, height: f32, air: f32) -> Foot {
+fn posed(place: Vec3, yaw: f32, pitch: f32, height: f32, air: f32) -> FootState {
     let turn = Quat::from_rotation_y(yaw);
     let rotation = turn * Quat::from_rotation_x(-pitch);
     let width = 0.05 * air;
@@ -139,7 +139,7 @@ fn posed(place: Vec3, yaw: f32, pitch: f32, height: f32, air: f32) -> Foot {
     let rise = 0.5 * (rise + rise.hypot(width));
     let back = SOLE_LENGTH * (pitch.max(0.0).cos() - 1.0);
     let toe = place + Vec3::Y * (SOLE + height + rise) + turn * vec3(0.0, 0.0, back);
-    Foot {
+    FootState {
         ankle: toe - rotation * vec3(0.0, -FOOT_DROP, FOOT_LENGTH),
         rotation,
         // On the ball the toes stay flat; in the air they follow the foot.

@@ -32,7 +32,7 @@ fn reach(share: f32, air: f32) -> f32 {
 }
 
 /// Bends the leg from `hip` towards `ankle` with the knee hinge along `sideways` (to the left);
-/// `air` as for a [`Foot`](super::feet::Foot).
+/// `air` as for a [`FootState`](super::feet::FootState).
 pub fn bend(hip: Vec3, ankle: Vec3, sideways: Vec3, air: f32) -> Leg {
     let full = THIGH + SHIN;
     let span = ankle - hip;

@@ -20,7 +20,7 @@ use super::RATE;
 use super::clip::Clip;
 use super::roles::Roles;
 use body::{Bearing, Manner};
-use feet::Foot;
+use feet::FootState;
 use figure::{FOOT, HIPS, JOINTS, LEG, TOE, UP_LEG};
 use glam::{Quat, Vec3};
 use random::Random;
@@ -89,7 +89,7 @@ fn take(seed: u64, index: usize, frames: usize) -> Take {
     let bearings: Vec<Bearing> = (0..frames)
         .map(|frame| Bearing::at(&track, &manner, rhythm.phase[frame], frame as f32 / RATE))
         .collect();
-    let feet: Vec<[Foot; 2]> = (0..frames)
+    let feet: Vec<[FootState; 2]> = (0..frames)
         .map(|frame| {
             let time = frame as f32 / RATE;
             [0, 1].map(|side| feet::foot(&track, &stances[side], &stances[1 - side], side, time))
@@ -127,7 +127,7 @@ fn take(seed: u64, index: usize, frames: usize) -> Take {
 }
 
 /// Lowers the hips, smoothly, wherever a loaded leg would not reach its foot.
-fn lower(pelvis: &mut [(Vec3, Quat)], feet: &[[Foot; 2]]) {
+fn lower(pelvis: &mut [(Vec3, Quat)], feet: &[[FootState; 2]]) {
     let needs: Vec<f32> = pelvis
         .iter()
         .zip(feet)
@@ -149,7 +149,7 @@ fn lower(pelvis: &mut [(Vec3, Quat)], feet: &[[Foot; 2]]) {
 fn pose(
     bearing: &Bearing,
     manner: &Manner,
-    feet: &[Foot; 2],
+    feet: &[FootState; 2],
     (position, rotation): (Vec3, Quat),
 ) -> [Quat; JOINTS] {
     let mut pose = [Quat::IDENTITY; JOINTS];

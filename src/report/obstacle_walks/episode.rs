@@ -34,7 +34,7 @@ pub enum End {
 
 /// One episode, on the way to one target.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Episode {
+pub struct DrawnEpisode {
     /// What the panel shows, such as "level 9".
     pub title: String,
     pub obstacles: Vec<Obstacle>,

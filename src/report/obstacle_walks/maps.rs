@@ -1,6 +1,6 @@
 //! The obstacle maps beside an episode's panel.
 
-use super::episode::{CELLS, Episode, Map, seconds};
+use super::episode::{CELLS, DrawnEpisode, Map, seconds};
 use super::symbols::{OBSTACLE, SEEN, draw_arrow, draw_outline};
 use crate::report::ReportError;
 use crate::report::canvas::{Anchor, Canvas, Pixel};
@@ -16,7 +16,7 @@ const APART: f64 = 280.0;
 /// `bottom`.
 pub fn draw(
     canvas: &mut Canvas<'_>,
-    episode: &Episode,
+    episode: &DrawnEpisode,
     step_s: f32,
     (left, bottom): Pixel,
 ) -> Result<(), ReportError> {

@@ -6,7 +6,7 @@ use crate::kernels::locomotion::locomotion_layout::{MAPS, boxes, state_f32};
 use crate::kernels::termination;
 use crate::kernels::locomotion::rasterize_maps::cell;
 use crate::motion::character_frame::to_local;
-use crate::report::obstacle_walks::{End, Episode, Map, Obstacle};
+use crate::report::obstacle_walks::{End, DrawnEpisode, Map, Obstacle};
 use crate::env::locomotion::cpu::CpuLocomotion;
 use crate::env::locomotion::{LEVELS, LocomotionTask, STEP_S};
 use crate::matching::MotionMatcher;
@@ -79,7 +79,7 @@ pub fn among_obstacles(
     matcher: &Arc<MotionMatcher>,
     task: LocomotionTask,
     count: usize,
-) -> Result<Vec<Episode>> {
+) -> Result<Vec<DrawnEpisode>> {
     (0..count)
         .map(|env| {
             let mut envs = episodes(matcher, task, LEVELS - 1, count);
@@ -95,7 +95,7 @@ fn obstacle_episode(
     controller: &dyn Controller,
     mut envs: CpuLocomotion,
     title: String,
-) -> Result<Episode> {
+) -> Result<DrawnEpisode> {
     let place = |envs: &CpuLocomotion, x: usize, z: usize| [envs.field(x, 0), envs.field(z, 0)];
     let starts = envs.boxes.clone();
     let mut points = vec![place(&envs, state_f32::X, state_f32::Z)];
@@ -114,7 +114,7 @@ fn obstacle_episode(
         end: [boxes::X, boxes::Z].map(|at| field(&envs.boxes, at, slot)),
         half: [boxes::HALF_X, boxes::HALF_Z].map(|at| field(&envs.boxes, at, slot)),
     });
-    Ok(Episode {
+    Ok(DrawnEpisode {
         title,
         obstacles: obstacles.collect(),
         points,
