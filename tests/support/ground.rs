@@ -1,7 +1,7 @@
 //! Characters among boxes, as inputs of the kernels of obstacles.
 
-use crate::geometry::{Obstacle, Stance};
-use crate::inputs::{Draw, POISON};
+use super::geometry::{Obstacle, Stance};
+use super::inputs::{Draw, POISON};
 use footwork::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, boxes, state_f32, state_u32};
 
 /// Half a cell of the map: in exact worlds every length is a multiple of it, so that cell centres

@@ -6,7 +6,6 @@ use crate::support::database::DATABASE;
 use footwork::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, state_f32, state_u32};
 use footwork::kernels::termination;
 use footwork::kernels::locomotion::{observe, advance_and_reward};
-use footwork::motion::database::Database;
 use footwork::motion::features::{FRAMES_PER_STEP, MIN_FUTURE_FRAMES, POSE_DIM};
 use footwork::env::locomotion::Plane;
 
@@ -73,7 +72,7 @@ impl Worlds {
     }
 
     fn step(&mut self, matched: &[u32]) {
-        let Plane { reach, bonus, .. } = Plane::default();
+        let task = Plane::default();
         advance_and_reward::twin(
             &DATABASE.candidates,
             matched,
@@ -85,12 +84,12 @@ impl Worlds {
             &advance_and_reward::Params {
                 envs: ENVS as u32,
                 offset: 0,
-                reach,
+                reach: task.success_radius,
                 near: 1.0,
                 progress: 0.0,
                 clear: 0.0,
                 shift: 0.0,
-                bonus,
+                bonus: task.success_bonus,
                 crash: 0.0,
             },
         );

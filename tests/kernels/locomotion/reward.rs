@@ -8,7 +8,7 @@ use footwork::kernels::termination;
 use footwork::kernels::locomotion::advance_and_reward;
 use footwork::env::locomotion::kernel_params::KernelParams;
 use footwork::env::locomotion::task::Reward;
-use footwork::env::locomotion::{Obstacles, Task};
+use footwork::env::locomotion::{EnvConfig, LocomotionTask, Obstacles};
 
 const ENVS: usize = 2000;
 
@@ -199,17 +199,13 @@ fn every_weight_by_itself_and_all_together() {
 
 /// The parameters of a reading of the task.
 fn weights(task: Obstacles) -> advance_and_reward::Params {
-    let rules = KernelParams {
-        task: Task::Obstacles(task),
+    let config = EnvConfig {
+        task: LocomotionTask::Obstacles(task),
         envs: ENVS,
-        first: 0,
-        horizon: 8,
-        candidates: 1,
         seed: 0,
-        step_counter: 0,
         level: 9,
     };
-    rules.step()
+    KernelParams::new(&config, 0, 1).advance_and_reward()
 }
 
 #[test]
