@@ -27,7 +27,10 @@ fn speed(player: &Player, env: usize) -> f32 {
 
 /// So many successes of 1000 episodes.
 fn stats(successes: f32) -> Stats {
-    Stats::new(&STAT_NAMES, &[1000.0, successes, 0.0, 1000.0 - successes, 9000.0, 0.0])
+    Stats::new(
+        &STAT_NAMES,
+        &[1000.0, successes, 0.0, 1000.0 - successes, 9000.0, 0.0],
+    )
 }
 
 #[test]
@@ -40,7 +43,10 @@ fn a_passed_level_holds_for_episodes_that_begin() {
         let mut player = Player::open(&device, &config, 4);
         player.envs.advance_curriculum(&stats(0.0));
         assert_eq!(player.state().level, 0);
-        assert!((0..ENVS).all(|env| speed(&player, env) == 0.0), "the first stands");
+        assert!(
+            (0..ENVS).all(|env| speed(&player, env) == 0.0),
+            "the first stands"
+        );
         player.envs.advance_curriculum(&stats(1000.0));
         player.envs.advance_curriculum(&stats(1000.0));
         assert_eq!(player.state().level, 2);

@@ -6,9 +6,9 @@ use super::player::{Player, devices};
 use super::{config, tasks};
 use crate::support::database::MATCHER;
 use crate::support::inputs::{Draw, POISON};
+use footwork::container::Section;
 use footwork::env::locomotion::{CpuLocomotion, EnvState, LocomotionTask, STAT_NAMES};
 use footwork::env::{VecEnv, termination};
-use footwork::container::Section;
 use footwork::gpu::Device;
 use footwork::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, state_u32};
 
@@ -60,7 +60,12 @@ fn final_observations(task: LocomotionTask, device: &Device) {
                 }
             }
         }
-        for (i, (got, want)) in player.final_observations().iter().zip(&expected).enumerate() {
+        for (i, (got, want)) in player
+            .final_observations()
+            .iter()
+            .zip(&expected)
+            .enumerate()
+        {
             let (row, number) = (i / dim, i % dim);
             let bar = match device {
                 _ if *got == POISON || *want == POISON => 0.0,
@@ -69,7 +74,10 @@ fn final_observations(task: LocomotionTask, device: &Device) {
                 // A step of a cell's byte.
                 Device::Gpu(_) => 1.001 / 255.0,
             };
-            assert!((got - want).abs() <= bar, "row {row}, {number}: {got} instead of {want}");
+            assert!(
+                (got - want).abs() <= bar,
+                "row {row}, {number}: {got} instead of {want}"
+            );
         }
     }
     assert!(written > 0, "no value went on");
@@ -116,15 +124,24 @@ fn statistics_are_sums_over_the_episodes_that_ended() {
                         std::mem::take(&mut lengths[env]),
                         std::mem::take(&mut returns[env]),
                     ];
-                    sums.iter_mut().zip(episode).for_each(|(sum, own)| *sum += own);
+                    sums.iter_mut()
+                        .zip(episode)
+                        .for_each(|(sum, own)| *sum += own);
                 }
                 let stats = player.stats();
                 for (name, want) in STAT_NAMES.into_iter().zip(sums) {
                     let got = stats.sum(name);
-                    let bar = if name == "returns" { 1e-4 * want.abs().max(1.0) } else { 0.0 };
+                    let bar = if name == "returns" {
+                        1e-4 * want.abs().max(1.0)
+                    } else {
+                        0.0
+                    };
                     assert!((got - want).abs() <= bar, "{name}: {got} instead of {want}");
                 }
-                assert!(player.stats().iter().all(|(_, sum)| sum == 0.0), "read once");
+                assert!(
+                    player.stats().iter().all(|(_, sum)| sum == 0.0),
+                    "read once"
+                );
             }
         }
     }

@@ -56,7 +56,9 @@ impl Pair {
 
     fn step(&mut self, action: &[f32]) {
         let [before, _] = self.states();
-        self.players.iter_mut().for_each(|player| player.step(action));
+        self.players
+            .iter_mut()
+            .for_each(|player| player.step(action));
         let [cpu, gpu] = self.states();
         assert_eq!((cpu.step_counter, cpu.level), (gpu.step_counter, gpu.level));
         for env in self.together() {
@@ -163,7 +165,10 @@ impl Pair {
         let [cpu, gpu] = [0, 1].map(|at| self.players[at].rewards());
         for at in (0..ROLLOUT * ENVS).filter(|at| together.contains(&(at % ENVS))) {
             let (want, got) = (cpu[at], gpu[at]);
-            assert!((got - want).abs() < 1e-3, "sample {at}: {got} instead of {want}");
+            assert!(
+                (got - want).abs() < 1e-3,
+                "sample {at}: {got} instead of {want}"
+            );
             assert_eq!(ended[at], also_ended[at], "sample {at}");
         }
     }
@@ -173,7 +178,11 @@ impl Pair {
         let [cpu, gpu] = [0, 1].map(|at| self.players[at].stats());
         if self.parted.is_empty() {
             for ((name, want), (_, got)) in cpu.iter().zip(gpu.iter()) {
-                let bar = if name == "returns" { 1e-4 * want.abs().max(1.0) } else { 0.0 };
+                let bar = if name == "returns" {
+                    1e-4 * want.abs().max(1.0)
+                } else {
+                    0.0
+                };
                 assert!((got - want).abs() <= bar, "{name}: {got} instead of {want}");
             }
         }
@@ -251,7 +260,10 @@ fn close(cpu: &EnvState, gpu: &EnvState, env: usize, count: usize) {
     let sizes = part(boxes::HALF_X..boxes::FIELDS, boxes::FIELDS, env, count);
     assert_eq!(cpu.boxes[sizes.clone()], gpu.boxes[sizes], "{what}: sizes");
     let axes = part(0..VELOCITY_DIM, VELOCITY_DIM, env, count);
-    for (want, got) in cpu.obstacle_velocity[axes.clone()].iter().zip(&gpu.obstacle_velocity[axes]) {
+    for (want, got) in cpu.obstacle_velocity[axes.clone()]
+        .iter()
+        .zip(&gpu.obstacle_velocity[axes])
+    {
         // A sign may differ at a wall, where the next step makes up for it.
         assert!(
             (got.abs() - want.abs()).abs() <= 4.0 * f32::EPSILON,
@@ -263,7 +275,10 @@ fn close(cpu: &EnvState, gpu: &EnvState, env: usize, count: usize) {
 #[track_caller]
 fn assert_seen(want: &[f32], got: &[f32], step: u8) {
     assert_eq!(want[..POSE_DIM], got[..POSE_DIM]);
-    for (want, got) in want[POSE_DIM..BASE_OBS_DIM].iter().zip(&got[POSE_DIM..BASE_OBS_DIM]) {
+    for (want, got) in want[POSE_DIM..BASE_OBS_DIM]
+        .iter()
+        .zip(&got[POSE_DIM..BASE_OBS_DIM])
+    {
         assert!((want - got).abs() <= 1e-4);
     }
     for (want, got) in want[BASE_OBS_DIM..].iter().zip(&got[BASE_OBS_DIM..]) {
@@ -300,8 +315,12 @@ fn the_state_of_one_device_goes_on_on_the_other() {
     }
     let [cpu, gpu] = pair.states();
     let [from_cpu, from_gpu] = [0, 1].map(|at| pair.players[at].save());
-    pair.players[0].load(from_gpu).expect("the same environments");
-    pair.players[1].load(from_cpu).expect("the same environments");
+    pair.players[0]
+        .load(from_gpu)
+        .expect("the same environments");
+    pair.players[1]
+        .load(from_cpu)
+        .expect("the same environments");
     let [swapped_cpu, swapped_gpu] = pair.states();
     assert!(swapped_cpu == gpu && swapped_gpu == cpu);
     for _ in 0..ROLLOUT {

@@ -43,7 +43,11 @@ fn play_alike(task: LocomotionTask, envs: usize) {
     assert_eq!(all.final_observations(), parts.final_observations());
     let (all, parts) = (all.stats(), parts.stats());
     for ((name, want), (_, got)) in all.iter().zip(parts.iter()) {
-        let bar = if name == "returns" { 1e-5 * want.abs() } else { 0.0 };
+        let bar = if name == "returns" {
+            1e-5 * want.abs()
+        } else {
+            0.0
+        };
         assert!((want - got).abs() <= bar, "{name}: {got} instead of {want}");
     }
     assert!(envs < 50 || all.sum("episodes") > 0.0, "no episode ended");

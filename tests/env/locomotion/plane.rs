@@ -78,10 +78,15 @@ impl Pair {
                 state_f32::X | state_f32::Z => bar.place,
                 state_f32::HEADING_X | state_f32::HEADING_Z => bar.heading,
                 // A reward is as wrong as the distance, and each sum rounds.
-                state_f32::RETURN | state_f32::RETURNS => 200.0 * (bar.place + want.abs() * f32::EPSILON),
+                state_f32::RETURN | state_f32::RETURNS => {
+                    200.0 * (bar.place + want.abs() * f32::EPSILON)
+                }
                 _ => 0.0,
             };
-            let what = format!("step {}, environment {env}, field {field}", cpu.step_counter);
+            let what = format!(
+                "step {}, environment {env}, field {field}",
+                cpu.step_counter
+            );
             assert!(
                 (got - want).abs() <= allowed,
                 "{what}: {got} instead of {want} +- {allowed}"
@@ -151,7 +156,9 @@ impl Pair {
                 ("truncation", state_u32::TRUNCATIONS),
                 ("steps", state_u32::LENGTHS),
             ] {
-                let counted: u32 = before.state_u32[field * ENVS..(field + 1) * ENVS].iter().sum();
+                let counted: u32 = before.state_u32[field * ENVS..(field + 1) * ENVS]
+                    .iter()
+                    .sum();
                 assert_eq!(stats.sum(name), f64::from(counted), "{name}");
             }
             let returns = &before.state_f32[state_f32::RETURNS * ENVS..];

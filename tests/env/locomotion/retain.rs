@@ -35,7 +35,10 @@ fn same(all: &CpuLocomotion, some: &CpuLocomotion, envs: &[usize]) {
     assert_eq!(some.state_f32, rows(&all.state_f32, 1, envs));
     assert_eq!(some.state_u32, rows(&all.state_u32, 1, envs));
     assert_eq!(some.boxes, rows(&all.boxes, boxes::FIELDS * count, envs));
-    assert_eq!(some.obstacle_velocity, rows(&all.obstacle_velocity, VELOCITY_DIM * count, envs));
+    assert_eq!(
+        some.obstacle_velocity,
+        rows(&all.obstacle_velocity, VELOCITY_DIM * count, envs)
+    );
     assert_eq!(some.maps, rows(&all.maps, MAP_WORDS, envs));
     assert_eq!(some.termination, rows(&all.termination, 1, envs));
     let width = all.params.observation_dim();

@@ -19,13 +19,29 @@ struct Case {
 
 impl Case {
     /// Steps end where `termination(step, row)` says so. Rewards of 1000 on arrival.
-    fn new(rows: usize, steps: usize, seed: u32, termination: impl Fn(usize, usize) -> u32) -> Self {
+    fn new(
+        rows: usize,
+        steps: usize,
+        seed: u32,
+        termination: impl Fn(usize, usize) -> u32,
+    ) -> Self {
         let mut draw = Draw::new(seed);
         let samples = rows * steps;
-        let termination: Vec<u32> = (0..samples).map(|at| termination(at / rows, at % rows)).collect();
-        let arrival = |&termination: &u32| if termination == termination::SUCCESS { 1000.0 } else { 0.0 };
+        let termination: Vec<u32> = (0..samples)
+            .map(|at| termination(at / rows, at % rows))
+            .collect();
+        let arrival = |&termination: &u32| {
+            if termination == termination::SUCCESS {
+                1000.0
+            } else {
+                0.0
+            }
+        };
         Case {
-            reward: termination.iter().map(|e| arrival(e) + draw.normal()).collect(),
+            reward: termination
+                .iter()
+                .map(|e| arrival(e) + draw.normal())
+                .collect(),
             value: draw.normals(samples),
             next_value: draw.normals(rows),
             final_value: draw.normals(rows),
@@ -86,7 +102,11 @@ impl Case {
             sum += gamma.powi(n as i32) * f64::from(self.reward[later * rows + row]);
             let termination = self.termination[later * rows + row];
             let after = match termination {
-                _ if termination != termination::RUNNING && self.params.bootstrap & 1 << termination == 0 => 0.0,
+                _ if termination != termination::RUNNING
+                    && self.params.bootstrap & 1 << termination == 0 =>
+                {
+                    0.0
+                }
                 _ if termination != termination::RUNNING => self.real(self.last(later, row)),
                 _ if later + 1 < steps => self.real(self.value[(later + 1) * rows + row]),
                 _ => self.real(self.next_value[row]),
@@ -118,7 +138,9 @@ impl Case {
         let returns: Vec<f64> = returns.collect();
         let advantages = returns.iter().zip(&self.value);
         let advantages = advantages.map(|(of, &value)| (of - self.real(value)) as f32);
-        advantages.chain(returns.iter().map(|&of| of as f32)).collect()
+        advantages
+            .chain(returns.iter().map(|&of| of as f32))
+            .collect()
     }
 
     /// Everything an advantage of this row may add up.
@@ -234,7 +256,10 @@ fn agrees_for_every_set_of_ends_after_which_value_goes_on() {
 /// One arrival valued as if the walk went on, by hand: reward 10, then half of the value 4.
 #[test]
 fn an_arrival_that_goes_on_is_worth_its_value() {
-    for (bootstrap, worth) in [(1 << termination::TRUNCATED, 10.0), (1 << termination::SUCCESS, 12.0)] {
+    for (bootstrap, worth) in [
+        (1 << termination::TRUNCATED, 10.0),
+        (1 << termination::SUCCESS, 12.0),
+    ] {
         let mut case = Case::new(1, 1, 9, |_, _| termination::SUCCESS);
         (case.reward[0], case.value[0], case.final_value[0]) = (10.0, 3.0, 4.0);
         case.scale = [0.0, 1.0];

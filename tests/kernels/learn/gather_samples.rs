@@ -95,7 +95,11 @@ impl Case {
                 let (seen, row) = row.split_at(observation);
                 let (acted, row) = row.split_at(action);
                 let (mean, scalars) = row.split_at(action);
-                same(form, seen, &self.observation[from * observation..][..observation]);
+                same(
+                    form,
+                    seen,
+                    &self.observation[from * observation..][..observation],
+                );
                 same(form, acted, &self.action[from * action..][..action]);
                 same(form, mean, &self.mean[from * action..][..action]);
                 let oracle = self.scalars(from);
@@ -156,7 +160,10 @@ fn odd_numbers_are_passed_on() {
         &mut case.log_prob_and_value,
     ] {
         let odd = odd.into_iter().cycle();
-        values.iter_mut().zip(odd).for_each(|(value, odd)| *value = odd);
+        values
+            .iter_mut()
+            .zip(odd)
+            .for_each(|(value, odd)| *value = odd);
     }
     // A value of the critic is computed with: only the logarithms stay odd.
     case.log_prob_and_value[65..].fill(1.0);

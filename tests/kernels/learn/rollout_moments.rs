@@ -89,11 +89,16 @@ impl Case {
     fn variance(&self, values: &[f64], bar: f64) -> Interval {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
-        let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n;
+        let variance = values
+            .iter()
+            .map(|value| (value - mean).powi(2))
+            .sum::<f64>()
+            / n;
         let [low, high] = self.mean(values);
         // The mean that is subtracted is wrong itself, and each value is.
         let off = 0.5 * (high - low) + bar;
-        let bar = off * off + 2.0 * bar * variance.sqrt() + self.roundings() * (variance + off * off);
+        let bar =
+            off * off + 2.0 * bar * variance.sqrt() + self.roundings() * (variance + off * off);
         let [low, high] = about(variance, bar);
         [low.max(0.0), high]
     }
@@ -107,7 +112,12 @@ impl Case {
     }
 
     fn oracle(&self) -> ([Interval; 2], [Interval; scale::FIELDS]) {
-        let wide = |values: &[f32]| values.iter().map(|&value| f64::from(value)).collect::<Vec<_>>();
+        let wide = |values: &[f32]| {
+            values
+                .iter()
+                .map(|&value| f64::from(value))
+                .collect::<Vec<_>>()
+        };
         let (advantage, returned) = (wide(&self.advantage), wide(&self.returned));
         let [old_mean, old_std] = self.old.map(f64::from);
         let terms = |(value, returned): (&f32, &f64)| {

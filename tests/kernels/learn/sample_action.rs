@@ -142,6 +142,9 @@ fn parts_draw_what_all_together_draw() {
         ..all
     };
     let (action, log_prob) = part.run().twin;
-    assert_eq!(action[60 * ACTION..][..40 * ACTION], actions[60 * ACTION..][..40 * ACTION]);
+    assert_eq!(
+        action[60 * ACTION..][..40 * ACTION],
+        actions[60 * ACTION..][..40 * ACTION]
+    );
     assert_eq!(log_prob[60..100], log_probs[60..100]);
 }
