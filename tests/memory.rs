@@ -2,15 +2,10 @@
 //! pages are everybody's.
 
 use footwork::gpu::{Choice, Device};
-use footwork::motion::database::Database;
-use footwork::motion::normalise::Weights;
-use footwork::motion::synthetic;
-use footwork::rl::rollout;
-use footwork::rl::ppo::update::Learner;
-use footwork::nn::tensors;
-use footwork::train::config::{Config, Kind, Preset};
-use footwork::env::locomotion::{Batch, Setup};
-use std::sync::Arc;
+use footwork::rl::Algorithm;
+use footwork::rl::ppo::PpoLearner;
+use footwork::train::config::Preset;
+use footwork::train::tasks::REGISTRY;
 
 /// Bytes that the driver has given, and in how many pieces.
 fn given(device: &Device) -> (u64, usize) {
@@ -25,32 +20,21 @@ fn given(device: &Device) -> (u64, usize) {
 #[test]
 fn updates_allocate_nothing_on_the_device() {
     let device = Device::open(Choice::Lavapipe).expect("an adapter");
-    let (clips, roles) = synthetic::perform(1, 1.0);
-    let database = Database::build(&clips, roles, Weights::PAPER).expect("synthetic motion");
-    let database = Arc::new(database);
-    for kind in [Kind::Plane, Kind::Obstacles] {
-        let mut config = Config::preset(kind, Preset::Fast);
-        (config.ppo.envs, config.ppo.horizon, config.ppo.minibatch) = (32, 8, 128);
-        let (task, ppo) = (config.task, &config.ppo);
-        let setup = Setup {
-            task,
-            envs: ppo.envs,
-            horizon: ppo.horizon,
-            seed: 1,
-            level: 0,
-        };
-        let mut batch = Batch::open(&device, &database, &setup);
-        let mut learner = Learner::new(ppo, task.width(), &device, 1).expect("a network that fits");
+    for entry in &REGISTRY {
+        let mut config = entry.config(Preset::Fast);
+        let ppo = &mut config.ppo;
+        (ppo.envs, ppo.rollout_length, ppo.minibatch_size) = (32, 8, 128);
+        let task = (entry.load)(&config).expect("its data").task;
+        let mut envs = task.open(&device, config.ppo.envs, 1).expect("they fit");
+        let mut learner =
+            PpoLearner::new(&config.ppo, &envs.spec(), &device, 1).expect("a network that fits");
         let mut updates = |count: usize| {
             for _ in 0..count {
-                let policy = learner.policy();
-                let rollout = rollout::collect(&mut batch, &policy, &learner.scale, ppo, &device);
-                let losses = learner.update(&rollout.expect("a rollout"), ppo);
-                tensors::read(losses).expect("losses");
+                learner.iterate(&mut envs, 0).expect("an update");
             }
             given(&device)
         };
         let settled = updates(16);
-        assert_eq!(updates(24), settled, "{} bytes and blocks", task.name());
+        assert_eq!(updates(24), settled, "{}: bytes and blocks", entry.name);
     }
 }

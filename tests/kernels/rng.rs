@@ -1,11 +1,9 @@
 //! Oracle: `src/kernels/rng.rs`. Bar: equal bit for bit.
 
-use crate::checked;
-use crate::inputs::{Draw, POISON, POISON_WHOLE, gpu, same};
-use bytemuck::cast_slice;
-use footwork::gpu::Buffer;
-use footwork::gpu::kernel::groups;
+use crate::inputs::{Draw, same};
+use crate::support::forms::{Run, poison};
 use footwork::gpu::shader::Shader;
+use footwork::gpu::{Argument, groups};
 use footwork::kernels::rng::{gaussian, index_below, random4, uniform01};
 
 const KEYS: usize = 100_000;
@@ -68,39 +66,26 @@ fn draws_the_same_numbers_on_every_device() {
         .flat_map(|&d| [uniform01(d[1]), gaussian(d)])
         .collect();
 
+    let mut run = Run::new();
+    let input = run.input(&keys);
+    let bits = run.output(poison::<[u32; 4]>(KEYS));
+    let indices = run.output(poison::<u32>(KEYS));
+    let numbers = run.output(poison::<[f32; 2]>(KEYS));
+    let buffers: [&dyn Argument; 4] = [&input, bits.device(), indices.device(), numbers.device()];
     let groups = groups(&DRAW, KEYS);
-    let poison = (
-        vec![POISON_WHOLE; 4 * KEYS],
-        vec![POISON_WHOLE; KEYS],
-        vec![POISON; 2 * KEYS],
+    run.gpu.launch(&DRAW, groups, &buffers, &(KEYS as u32));
+    assert_eq!(bits.launched(&run.gpu), drawn);
+    assert_eq!(indices.launched(&run.gpu), below);
+    same(
+        "launched",
+        numbers.launched(&run.gpu).as_flattened(),
+        &reals,
     );
-    let gpu = gpu();
-    let outputs = (
-        Buffer::from_slice(&gpu, &poison.0),
-        Buffer::from_slice(&gpu, &poison.1),
-        Buffer::from_slice(&gpu, &poison.2),
-    );
-    let input = Buffer::from_slice(&gpu, keys.as_flattened());
-    gpu.launch(
-        &DRAW,
-        groups,
-        &[&input, &outputs.0, &outputs.1, &outputs.2],
-        &(KEYS as u32),
-    );
-    assert_eq!(outputs.0.read(&gpu).expect("bits"), drawn.as_flattened());
-    assert_eq!(outputs.1.read(&gpu).expect("indices"), below);
-    same("launched", &outputs.2.read(&gpu).expect("reals"), &reals);
 
-    let buffers: [&[u8]; 4] = [
-        cast_slice(&keys),
-        cast_slice(&poison.0),
-        cast_slice(&poison.1),
-        cast_slice(&poison.2),
-    ];
-    let outcome = checked::run(&DRAW, groups, &buffers, &(KEYS as u32));
-    assert_eq!(outcome.of::<u32>(1), drawn.as_flattened());
-    assert_eq!(outcome.of::<u32>(2), below);
-    same("checked", &outcome.of::<f32>(3), &reals);
+    let checked = run.checked(&DRAW, KEYS, &(KEYS as u32));
+    assert_eq!(bits.checked(&checked), drawn);
+    assert_eq!(indices.checked(&checked), below);
+    same("checked", numbers.checked(&checked).as_flattened(), &reals);
 }
 
 #[test]

@@ -25,24 +25,37 @@ macro_rules! forms {
         let mut run = $crate::support::forms::Run::new();
         forms!(@bind run [$kernel $shader ($size) ($params)] [] [] [] $($buffers)+,)
     }};
-    (@bind $run:ident $kernel:tt [$($host:tt)*] [$($device:tt)*] [$($output:ident)*] mut $values:expr, $($rest:tt)*) => {{
+    (@bind $run:ident $kernel:tt [$($host:tt)*] [$($device:tt)*] [$($output:ident)*]
+        mut $values:expr, $($rest:tt)*) => {{
         let mut output = $run.output($values.to_vec());
-        forms!(@bind $run $kernel [$($host)* (output.host())] [$($device)* (output.device())] [$($output)* output] $($rest)*)
+        forms!(
+            @bind $run $kernel
+            [$($host)* (output.host())] [$($device)* (output.device())] [$($output)* output]
+            $($rest)*
+        )
     }};
-    (@bind $run:ident $kernel:tt [$($host:tt)*] [$($device:tt)*] [$($output:ident)*] out $len:expr, $($rest:tt)*) => {{
+    (@bind $run:ident $kernel:tt [$($host:tt)*] [$($device:tt)*] [$($output:ident)*]
+        out $len:expr, $($rest:tt)*) => {{
         let mut output = $run.output($crate::support::forms::poison($len));
-        forms!(@bind $run $kernel [$($host)* (output.host())] [$($device)* (output.device())] [$($output)* output] $($rest)*)
+        forms!(
+            @bind $run $kernel
+            [$($host)* (output.host())] [$($device)* (output.device())] [$($output)* output]
+            $($rest)*
+        )
     }};
-    (@bind $run:ident $kernel:tt [$($host:tt)*] [$($device:tt)*] $outputs:tt $argument:expr => $values:expr, $($rest:tt)*) => {{
+    (@bind $run:ident $kernel:tt [$($host:tt)*] [$($device:tt)*] $outputs:tt
+        $argument:expr => $values:expr, $($rest:tt)*) => {{
         let device = $run.input(&$values[..]);
         forms!(@bind $run $kernel [$($host)* ($argument)] [$($device)* (&device)] $outputs $($rest)*)
     }};
-    (@bind $run:ident $kernel:tt [$($host:tt)*] [$($device:tt)*] $outputs:tt $values:expr, $($rest:tt)*) => {{
+    (@bind $run:ident $kernel:tt [$($host:tt)*] [$($device:tt)*] $outputs:tt
+        $values:expr, $($rest:tt)*) => {{
         let host = &$values[..];
         let device = $run.input(host);
         forms!(@bind $run $kernel [$($host)* (host)] [$($device)* (&device)] $outputs $($rest)*)
     }};
-    (@bind $run:ident [$kernel:ident $shader:ident $size:tt $params:tt] [$($host:tt)*] [$($device:tt)*] [$($output:ident)*]) => {{
+    (@bind $run:ident [$kernel:ident $shader:ident $size:tt $params:tt]
+        [$($host:tt)*] [$($device:tt)*] [$($output:ident)*]) => {{
         let params = $params;
         $kernel::twin($($host,)* &params);
         $kernel::launch(&$run.gpu, $($device,)* &params);
@@ -115,12 +128,7 @@ impl Run {
         }
     }
 
-    pub fn checked<P: Pod>(
-        &self,
-        shader: &'static Shader,
-        size: impl Size,
-        params: &P,
-    ) -> Outcome {
+    pub fn checked<P: Pod>(&self, shader: &'static Shader, size: impl Size, params: &P) -> Outcome {
         checked::run(shader, size.groups(shader), &self.bound, params)
     }
 }
@@ -170,7 +178,10 @@ impl<T: Element> Output<T> {
 fn guarded<T: Element>(form: &str, mut values: Vec<T>, len: usize) -> Vec<T> {
     let behind = values.split_off(len);
     let untouched = cast_slice::<T, u8>(&behind) == cast_slice::<T, u8>(&poison(GUARD));
-    assert!(untouched, "{form}: written beyond the end of {len} elements");
+    assert!(
+        untouched,
+        "{form}: written beyond the end of {len} elements"
+    );
     values
 }
 

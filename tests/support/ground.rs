@@ -1,7 +1,7 @@
 //! Characters among boxes, as inputs of the kernels of obstacles.
 
-use crate::geometry::{Obstacle, Stance};
-use crate::inputs::{Draw, POISON};
+use super::geometry::{Obstacle, Stance};
+use super::inputs::{Draw, POISON};
 use footwork::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, boxes, state_f32, state_u32};
 
 /// Half a cell of the map: in exact worlds every length is a multiple of it, so that cell centres
@@ -162,10 +162,16 @@ pub fn stance(reals: &[f32], envs: usize, env: usize) -> Stance {
 }
 
 /// The obstacles around it.
-pub fn obstacles(all: &[f32], obstacle_velocity: &[f32], count: usize, env: usize) -> Vec<Obstacle> {
+pub fn obstacles(
+    all: &[f32],
+    obstacle_velocity: &[f32],
+    count: usize,
+    env: usize,
+) -> Vec<Obstacle> {
     let obstacle = |slot: usize| {
         let of = |field: usize| f64::from(all[(env * boxes::FIELDS + field) * count + slot]);
-        let velocity = |axis: usize| f64::from(obstacle_velocity[(env * VELOCITY_DIM + axis) * count + slot]);
+        let velocity =
+            |axis: usize| f64::from(obstacle_velocity[(env * VELOCITY_DIM + axis) * count + slot]);
         Obstacle {
             centre: [of(boxes::X), of(boxes::Z)],
             half: [of(boxes::HALF_X), of(boxes::HALF_Z)],

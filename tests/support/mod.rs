@@ -1,5 +1,5 @@
 //! What several test binaries share.
-#![allow(dead_code, reason = "each binary uses a part of it")]
+#![allow(dead_code, unused_macros, reason = "each binary uses a part of it")]
 
 pub mod checked;
 #[macro_use]

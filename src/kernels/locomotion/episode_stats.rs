@@ -19,7 +19,12 @@ pub fn launch(
     sums: &Buffer<f32>,
     params: &Params,
 ) {
-    gpu.launch(&shader::EPISODE_STATS, [1, 1, 1], &[state_f32, state_u32, sums], params);
+    gpu.launch(
+        &shader::EPISODE_STATS,
+        [1, 1, 1],
+        &[state_f32, state_u32, sums],
+        params,
+    );
 }
 
 pub fn twin(state_f32: &mut [f32], state_u32: &mut [u32], sums: &mut [f32], params: &Params) {

@@ -19,8 +19,16 @@ crate::shader_params! {
 }
 
 pub fn launch(gpu: &Gpu, boxes: &Buffer<f32>, obstacle_velocity: &Buffer<f32>, params: &Params) {
-    let groups = groups(&shader::MOVE_OBSTACLES, (params.envs * params.count) as usize);
-    gpu.launch(&shader::MOVE_OBSTACLES, groups, &[boxes, obstacle_velocity], params);
+    let groups = groups(
+        &shader::MOVE_OBSTACLES,
+        (params.envs * params.count) as usize,
+    );
+    gpu.launch(
+        &shader::MOVE_OBSTACLES,
+        groups,
+        &[boxes, obstacle_velocity],
+        params,
+    );
 }
 
 pub fn twin(boxes: &mut [f32], obstacle_velocity: &mut [f32], params: &Params) {

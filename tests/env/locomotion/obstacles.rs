@@ -1,35 +1,34 @@
-//! Worlds among obstacles under the same actions, on the GPU against the CPU.
-//! Oracle: `CpuWorld`, which runs the twins.
+//! Environments with obstacles under the same actions, on the GPU against the CPU.
+//! Oracle: `CpuLocomotion`, which runs the twins.
 //! Bar: random numbers equal bit for bit; frames, hits, maps and ends equal (soft cells up to a step of
 //! their bytes); places within the roundings of the steps so far. An environment may go another way only where something it
 //! decides lies within 1e-5 m of an edge, as geometry in f64 tells.
 
-use crate::geometry::{Point, Stance, depth};
-use crate::ground::{obstacles, stance};
-use crate::inputs::{Draw, gpu};
-use crate::paper::DATABASE;
-use burn::tensor::Device as Tensors;
-use footwork::gpu::Device;
-use footwork::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, CELLS, BASE_OBS_DIM, MAP_WORDS, boxes, state_f32, state_u32};
-use footwork::motion::features::{POSE_DIM, TRAJECTORY_DIM};
-use footwork::nn::tensors::{read, upload, vector};
-use footwork::train::controller::{Controller, Scripted};
+use super::config;
+use super::player::{Player, devices};
+use crate::support::database::{DATABASE, MATCHER};
+use crate::support::geometry::{Point, Stance, depth};
+use crate::support::ground::{obstacles, stance};
+use crate::support::inputs::Draw;
 use footwork::env::locomotion::task::SpeedDistribution;
-use footwork::env::locomotion::{LEVELS, Obstacles, Setup, EnvState, Task, Values, World, open};
+use footwork::env::locomotion::{EnvState, LocomotionTask, Obstacles};
+use footwork::kernels::locomotion::locomotion_layout::{
+    BASE_OBS_DIM, CELLS, MAP_WORDS, VELOCITY_DIM, boxes, state_f32, state_u32,
+};
+use footwork::motion::features::{POSE_DIM, TRAJECTORY_DIM};
 use std::collections::HashSet;
 use std::ops::Range;
-use std::sync::Arc;
 
 const ENVS: usize = 64;
-const HORIZON: usize = 8;
+const ROLLOUT: usize = 8;
 /// This near to an edge rounding decides, m.
 const EDGE: f64 = 1e-5;
 
-/// The two batches of worlds, and what differs.
+/// The two batches, and what differs.
 struct Pair {
     task: Obstacles,
-    worlds: [Box<dyn World>; 2],
-    tensors: [Tensors; 2],
+    /// On the CPU and on the GPU.
+    players: [Player; 2],
     /// Environments that went another way on an edge.
     parted: HashSet<usize>,
     /// Episodes ended, collisions, arrivals and hits, so that the test is known to meet them.
@@ -38,54 +37,29 @@ struct Pair {
 
 impl Pair {
     fn new(task: Obstacles) -> Self {
-        let database = Arc::new(DATABASE.clone());
-        let devices = [Device::Cpu, Device::from(gpu())];
-        let setup = Setup {
-            task: Task::Obstacles(task),
-            envs: ENVS,
-            horizon: HORIZON,
-            seed: 42,
-            level: LEVELS - 1,
-        };
-        let worlds = [0, 1].map(|at| open(&devices[at], &database, &setup));
+        let config = config(LocomotionTask::Obstacles(task), ENVS);
         Pair {
             task,
-            worlds,
-            tensors: devices.map(|device| device.tensors()),
+            players: devices().map(|device| Player::together(&device, &config, ROLLOUT)),
             parted: HashSet::new(),
             met: [0; 4],
         }
     }
 
-    fn snapshots(&self) -> [EnvState; 2] {
-        [0, 1].map(|at| self.worlds[at].snapshot().expect("snapshot"))
+    fn states(&self) -> [EnvState; 2] {
+        [0, 1].map(|at| self.players[at].state())
     }
 
     fn together(&self) -> Vec<usize> {
         (0..ENVS).filter(|env| !self.parted.contains(env)).collect()
     }
 
-    /// Straight to the target at a brisk pace, with a new policy's noise.
-    fn actions(&mut self, draw: &mut Draw) -> Vec<f32> {
-        let width = Task::Obstacles(self.task).width();
-        let seen = read(self.worlds[0].observe()).expect("observation");
-        let scripted = Scripted {
-            database: &DATABASE,
-            speed: 2.0,
-        };
-        let mut action = scripted.act(&seen, width).expect("action");
-        for value in &mut action {
-            *value += 0.5 * draw.normal();
-        }
-        action
-    }
-
     fn step(&mut self, action: &[f32]) {
-        let [before, _] = self.snapshots();
-        for (world, device) in self.worlds.iter_mut().zip(&self.tensors) {
-            world.step(upload(action.to_vec(), [ENVS, TRAJECTORY_DIM], device));
-        }
-        let [cpu, gpu] = self.snapshots();
+        let [before, _] = self.states();
+        self.players
+            .iter_mut()
+            .for_each(|player| player.step(action));
+        let [cpu, gpu] = self.states();
         assert_eq!((cpu.step_counter, cpu.level), (gpu.step_counter, gpu.level));
         for env in self.together() {
             if decisions(&cpu, env) == decisions(&gpu, env) && self.maps_agree(&cpu, &gpu, env) {
@@ -150,7 +124,7 @@ impl Pair {
         let frame = before.state_u32[state_u32::FRAME * ENVS + env];
         let mut query = DATABASE.features[frame as usize];
         query[POSE_DIM..][..TRAJECTORY_DIM].copy_from_slice(&action[..TRAJECTORY_DIM]);
-        let matched = DATABASE.index().nearest(frame, &query).index as usize;
+        let matched = MATCHER.index.nearest(frame, &query).index as usize;
         let frame = DATABASE.candidates[matched] as usize;
         let path = |frame: usize| DATABASE.path[frame].map(f64::from);
         let [x, z, hx, hz] = path(frame);
@@ -168,7 +142,7 @@ impl Pair {
 
     /// Maps of the observation equal, the rest within rounding.
     fn compare_observations(&mut self) {
-        let [cpu, gpu] = [0, 1].map(|at| read(self.worlds[at].observe()).expect("observation"));
+        let [cpu, gpu] = [0, 1].map(|at| self.players[at].observation());
         let width = cpu.len() / ENVS;
         for env in self.together() {
             let part = env * width..(env + 1) * width;
@@ -176,75 +150,67 @@ impl Pair {
         }
     }
 
-    /// The same for the last real observations of a rollout's episodes, and what is made of them.
-    fn end_rollout(&mut self) {
-        let [cpu, gpu] = [0, 1].map(|at| read(self.worlds[at].last()).expect("observation"));
-        let rows = if !self.task.success_is_terminal {
-            HORIZON * ENVS
-        } else {
-            ENVS
-        };
-        let width = cpu.len() / rows;
-        assert_eq!((cpu.len(), gpu.len()), (rows * width, rows * width));
+    /// The columns of a rollout: rewards within rounding, terminations equal, final observations as all
+    /// others.
+    fn compare_columns(&mut self) {
         let together = self.together();
-        for row in (0..rows).filter(|row| together.contains(&(row % ENVS))) {
+        let [cpu, gpu] = [0, 1].map(|at| self.players[at].final_observations());
+        let width = self.players[0].spec().observation.dim();
+        assert_eq!(cpu.len(), gpu.len());
+        for row in (0..cpu.len() / width).filter(|row| together.contains(&(row % ENVS))) {
             let part = row * width..(row + 1) * width;
             assert_seen(&cpu[part.clone()], &gpu[part], self.step_of_a_cell());
         }
-        let [cpu, gpu] = [0, 1].map(|at| self.judged(at, rows));
-        for at in (0..HORIZON * ENVS).filter(|at| together.contains(&(at % ENVS))) {
+        let [ended, also_ended] = [0, 1].map(|at| self.players[at].terminations());
+        let [cpu, gpu] = [0, 1].map(|at| self.players[at].rewards());
+        for at in (0..ROLLOUT * ENVS).filter(|at| together.contains(&(at % ENVS))) {
             let (want, got) = (cpu[at], gpu[at]);
             assert!(
                 (got - want).abs() < 1e-3,
                 "sample {at}: {got} instead of {want}"
             );
+            assert_eq!(ended[at], also_ended[at], "sample {at}");
         }
-    }
-
-    /// Advantages under values drawn at random.
-    fn judged(&mut self, at: usize, lasts: usize) -> Vec<f32> {
-        let (mut draw, device) = (Draw::new(6), &self.tensors[at]);
-        let mut values = |count: usize| vector(&draw.normals(count), device);
-        let values = Values {
-            observed: values(HORIZON * ENVS),
-            next: values(ENVS),
-            last: values(lasts),
-            scale: vector(&[0.5, 2.0], device),
-        };
-        let (advantage, _) = self.worlds[at].judge(values, 0.99, 0.95);
-        read(advantage).expect("advantage")
     }
 
     /// Counts agree unless an environment has parted.
-    fn compare_tallies(&mut self) {
-        let [cpu, gpu] = [0, 1].map(|at| read(self.worlds[at].tally()).expect("sums"));
+    fn compare_stats(&mut self) {
+        let [cpu, gpu] = [0, 1].map(|at| self.players[at].stats());
         if self.parted.is_empty() {
-            assert_eq!(cpu[..5], gpu[..5]);
-            assert!((cpu[5] - gpu[5]).abs() <= 1e-4 * cpu[5].abs().max(1.0));
+            for ((name, want), (_, got)) in cpu.iter().zip(gpu.iter()) {
+                let bar = if name == "returns" {
+                    1e-4 * want.abs().max(1.0)
+                } else {
+                    0.0
+                };
+                assert!((got - want).abs() <= bar, "{name}: {got} instead of {want}");
+            }
         }
+        let [episodes, successes, collisions, truncations] =
+            ["episodes", "successes", "collision", "truncation"].map(|name| cpu.sum(name));
         assert_eq!(
-            cpu[0],
-            cpu[1] + cpu[2] + cpu[3],
+            episodes,
+            successes + collisions + truncations,
             "each episode ended in one way"
         );
-        for (met, count) in self.met.iter_mut().zip([cpu[0], cpu[1], cpu[2]]) {
+        for (met, count) in self.met.iter_mut().zip([episodes, collisions, successes]) {
             *met += count as u32;
         }
     }
 
     fn play(&mut self, steps: usize) {
-        let [cpu, gpu] = self.snapshots();
+        let [cpu, gpu] = self.states();
         for env in 0..ENVS {
             close(&cpu, &gpu, env, self.task.count as usize);
         }
         let mut draw = Draw::new(1);
         for step in 1..=steps {
-            let action = self.actions(&mut draw);
+            let action = self.players[0].actions(&mut draw);
             self.step(&action);
-            if step % HORIZON == 0 {
+            if step % ROLLOUT == 0 {
                 self.compare_observations();
-                self.end_rollout();
-                self.compare_tallies();
+                self.compare_columns();
+                self.compare_stats();
             }
         }
         println!("{} parted of {ENVS}, met {:?}", self.parted.len(), self.met);
@@ -294,7 +260,10 @@ fn close(cpu: &EnvState, gpu: &EnvState, env: usize, count: usize) {
     let sizes = part(boxes::HALF_X..boxes::FIELDS, boxes::FIELDS, env, count);
     assert_eq!(cpu.boxes[sizes.clone()], gpu.boxes[sizes], "{what}: sizes");
     let axes = part(0..VELOCITY_DIM, VELOCITY_DIM, env, count);
-    for (want, got) in cpu.obstacle_velocity[axes.clone()].iter().zip(&gpu.obstacle_velocity[axes]) {
+    for (want, got) in cpu.obstacle_velocity[axes.clone()]
+        .iter()
+        .zip(&gpu.obstacle_velocity[axes])
+    {
         // A sign may differ at a wall, where the next step makes up for it.
         assert!(
             (got.abs() - want.abs()).abs() <= 4.0 * f32::EPSILON,
@@ -306,7 +275,10 @@ fn close(cpu: &EnvState, gpu: &EnvState, env: usize, count: usize) {
 #[track_caller]
 fn assert_seen(want: &[f32], got: &[f32], step: u8) {
     assert_eq!(want[..POSE_DIM], got[..POSE_DIM]);
-    for (want, got) in want[POSE_DIM..BASE_OBS_DIM].iter().zip(&got[POSE_DIM..BASE_OBS_DIM]) {
+    for (want, got) in want[POSE_DIM..BASE_OBS_DIM]
+        .iter()
+        .zip(&got[POSE_DIM..BASE_OBS_DIM])
+    {
         assert!((want - got).abs() <= 1e-4);
     }
     for (want, got) in want[BASE_OBS_DIM..].iter().zip(&got[BASE_OBS_DIM..]) {
@@ -334,19 +306,24 @@ fn every_other_switch_agrees() {
 
 /// A state put back goes on as the one it was taken of.
 #[test]
-fn a_snapshot_of_one_device_goes_on_on_the_other() {
+fn the_state_of_one_device_goes_on_on_the_other() {
     let mut pair = Pair::new(Obstacles::PRINTED);
     let mut draw = Draw::new(3);
-    for _ in 0..HORIZON {
+    for _ in 0..ROLLOUT {
         let action = draw.normals(ENVS * TRAJECTORY_DIM);
         pair.step(&action);
     }
-    let [cpu, gpu] = pair.snapshots();
-    pair.worlds[0].restore(&gpu);
-    pair.worlds[1].restore(&cpu);
-    let [swapped_cpu, swapped_gpu] = pair.snapshots();
+    let [cpu, gpu] = pair.states();
+    let [from_cpu, from_gpu] = [0, 1].map(|at| pair.players[at].save());
+    pair.players[0]
+        .load(from_gpu)
+        .expect("the same environments");
+    pair.players[1]
+        .load(from_cpu)
+        .expect("the same environments");
+    let [swapped_cpu, swapped_gpu] = pair.states();
     assert!(swapped_cpu == gpu && swapped_gpu == cpu);
-    for _ in 0..HORIZON {
+    for _ in 0..ROLLOUT {
         let action = draw.normals(ENVS * TRAJECTORY_DIM);
         pair.step(&action);
     }

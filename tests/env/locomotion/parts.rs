@@ -1,74 +1,63 @@
-//! A training's worlds on the CPU in parts.
-//! Oracle: the same worlds all together. Bar: equal bit for bit.
+//! A training's environments on the CPU in parts.
+//! Oracle: the same environments all in one. Bar: equal bit for bit, but for the summed return.
 
-use crate::inputs::Draw;
-use crate::paper::DATABASE;
-use burn::tensor::Tensor;
+use super::player::Player;
+use super::{config, tasks};
+use crate::support::database::MATCHER;
+use crate::support::inputs::Draw;
+use footwork::env::locomotion::{CpuLocomotion, EnvConfig, LocomotionTask};
+use footwork::env::{EnvBatch, VecEnv};
 use footwork::gpu::Device;
-use footwork::motion::features::TRAJECTORY_DIM;
-use footwork::nn::tensors::{read, upload, vector};
-use footwork::env::locomotion::{self, Batch, LEVELS, Obstacles, Plane, Setup, Task};
-use std::sync::Arc;
 
 const STEPS: usize = 40;
 
-/// Plays the same means through both, one part after another, and puts back what it was in between.
-fn same(task: Task, envs: usize) {
-    let database = Arc::new(DATABASE.clone());
-    let device = Device::Cpu;
-    let setup = Setup {
-        task,
-        envs,
-        horizon: STEPS,
-        seed: 3,
-        level: LEVELS - 1,
+/// One part that begins as the parts of a training do.
+fn one(config: &EnvConfig) -> Player {
+    let jitter = match config.task {
+        LocomotionTask::Plane(plane) => plane.max_steps,
+        LocomotionTask::Obstacles(_) => 0,
     };
-    let mut all = locomotion::open(&device, &database, &setup);
-    let mut batch = Batch::open(&device, &database, &setup);
-    assert_eq!(batch.parts.len(), envs.min(4));
-    let log_std = vector(&[0.0; TRAJECTORY_DIM], &device.tensors());
+    let part = CpuLocomotion::part(MATCHER.clone(), config, 0, jitter);
+    let envs = EnvBatch {
+        parts: vec![Box::new(part) as Box<dyn VecEnv>],
+        curriculum: None,
+    };
+    Player::new(&Device::Cpu, envs, config, STEPS)
+}
+
+fn play_alike(task: LocomotionTask, envs: usize) {
+    let config = config(task, envs);
+    let (mut all, mut parts) = (one(&config), Player::open(&Device::Cpu, &config, STEPS));
+    assert_eq!(parts.envs.parts.len(), envs.min(4));
+    assert_eq!(parts.spec(), all.spec());
     let mut draw = Draw::new(4);
-    for step in 0..STEPS {
-        let mean = draw.normals(envs * TRAJECTORY_DIM);
-        let mean = upload(mean, [envs, TRAJECTORY_DIM], &device.tensors());
-        let observed = all.observe();
-        let (action, _) = all.act(mean.clone(), log_std.clone());
-        all.step(action);
-        let (mut first, mut seen) = (0, Vec::new());
-        for part in &mut batch.parts {
-            let observed = part.observe();
-            let count = observed.dims()[0];
-            let mean = mean.clone().narrow(0, first, count);
-            let (action, _) = part.act(mean, log_std.clone());
-            part.step(action);
-            seen.push(observed);
-            first += count;
-        }
-        let seen = Tensor::cat(seen, 0);
-        assert_eq!(read(observed).unwrap(), read(seen).unwrap());
-        assert_eq!(all.snapshot().unwrap(), batch.snapshot().unwrap());
-        if step == STEPS / 2 {
-            batch = Batch::open(&device, &database, &setup);
-            batch.restore(&all.snapshot().unwrap());
-        }
+    for _ in 0..STEPS {
+        let action = all.actions(&mut draw);
+        all.step(&action);
+        parts.step(&action);
+        assert_eq!(all.observation(), parts.observation());
+        assert_eq!(all.state(), parts.state());
     }
-    let [all, parts] = [all.tally(), batch.tally()].map(|sums| read(sums).unwrap());
-    assert_eq!(all[..5], parts[..5]);
-    assert!(
-        (all[5] - parts[5]).abs() <= 1e-5 * all[5].abs(),
-        "{all:?} {parts:?}"
-    );
-    assert!(envs < 50 || all[0] > 0.0, "no episode ended");
+    assert_eq!(all.rewards(), parts.rewards());
+    assert_eq!(all.terminations(), parts.terminations());
+    assert_eq!(all.final_observations(), parts.final_observations());
+    let (all, parts) = (all.stats(), parts.stats());
+    for ((name, want), (_, got)) in all.iter().zip(parts.iter()) {
+        let bar = if name == "returns" {
+            1e-5 * want.abs()
+        } else {
+            0.0
+        };
+        assert!((want - got).abs() <= bar, "{name}: {got} instead of {want}");
+    }
+    assert!(envs < 50 || all.sum("episodes") > 0.0, "no episode ended");
 }
 
 #[test]
-fn parts_walk_on_the_plane_as_all_together() {
-    for envs in [1, 3, 4, 50] {
-        same(Task::Plane(Plane::default()), envs);
+fn parts_play_as_all_together() {
+    for task in tasks() {
+        for envs in [1, 3, 4, 50] {
+            play_alike(task, envs);
+        }
     }
-}
-
-#[test]
-fn parts_walk_among_obstacles_as_all_together() {
-    same(Task::Obstacles(Obstacles::FAST), 50);
 }

@@ -1,32 +1,28 @@
-//! A thousand steps of 256 worlds under the same actions, on the GPU against the CPU.
-//! Oracle: `CpuWorld`, which runs the twins.
+//! A thousand steps of 256 environments under the same actions, on the GPU against the CPU.
+//! Oracle: `CpuLocomotion`, which runs the twins.
 //! Bar: frames, ages and counts equal; headings within a rounding or two a step of the episode,
 //! places within that angle times the path walked. An environment may go another way only after
 //! a proven tie: an arrival decided within that bar of reach, or two rows as near in f64 as f32
 //! can tell.
 
-use crate::inputs::{Draw, gpu};
-use crate::oracle::Oracle;
-use crate::paper::DATABASE;
-use burn::tensor::Device as Tensors;
-use footwork::gpu::Device;
+use super::config;
+use super::player::{Player, devices};
+use crate::support::database::DATABASE;
+use crate::support::inputs::Draw;
+use crate::support::oracle::Oracle;
+use footwork::env::locomotion::{EnvState, LocomotionTask, Plane};
 use footwork::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, state_f32, state_u32};
 use footwork::motion::features::{FEATURE_DIM, FRAMES_PER_STEP, POSE_DIM, TRAJECTORY_DIM};
-use footwork::nn::tensors::{read, upload, vector};
-use footwork::train::controller::{Controller, Scripted};
-use footwork::env::locomotion::{LEVELS, Plane, Setup, EnvState, Task, World, open};
 use std::collections::HashSet;
-use std::sync::Arc;
 
 const ENVS: usize = 256;
 const STEPS: usize = 1000;
-const HORIZON: usize = 16;
+const ROLLOUT: usize = 16;
 
-/// The two batches of worlds, and what differs.
+/// The two batches, and what differs.
 struct Pair {
-    cpu: Box<dyn World>,
-    gpu: Box<dyn World>,
-    tensors: [Tensors; 2],
+    cpu: Player,
+    gpu: Player,
     oracle: Oracle,
     /// Environments that went another way after a tie.
     parted: HashSet<usize>,
@@ -36,39 +32,26 @@ struct Pair {
 
 impl Pair {
     fn new() -> Self {
-        let database = Arc::new(DATABASE.clone());
-        let devices = [Device::Cpu, Device::from(gpu())];
-        let setup = Setup {
-            task: Task::Plane(Plane::default()),
-            envs: ENVS,
-            horizon: HORIZON,
-            seed: 42,
-            level: LEVELS - 1,
-        };
-        let world = |device| open(device, &database, &setup);
+        let config = config(LocomotionTask::Plane(Plane::default()), ENVS);
+        let [cpu, gpu] = devices().map(|device| Player::together(&device, &config, ROLLOUT));
         Pair {
-            cpu: world(&devices[0]),
-            gpu: world(&devices[1]),
-            tensors: devices.map(|device| device.tensors()),
-            oracle: Oracle::new(&database.rows()),
+            cpu,
+            gpu,
+            oracle: Oracle::new(&DATABASE.rows()),
             parted: HashSet::new(),
             most: 0.0,
         }
     }
 
-    fn snapshots(&self) -> [EnvState; 2] {
-        [&self.cpu, &self.gpu].map(|world| world.snapshot().expect("snapshot"))
+    fn states(&self) -> [EnvState; 2] {
+        [self.cpu.state(), self.gpu.state()]
     }
 
     fn step(&mut self, action: &[f32]) {
-        let [before, _] = self.snapshots();
-        for (world, device) in [&mut self.cpu, &mut self.gpu]
-            .into_iter()
-            .zip(&self.tensors)
-        {
-            world.step(upload(action.to_vec(), [ENVS, TRAJECTORY_DIM], device));
-        }
-        let [cpu, gpu] = self.snapshots();
+        let [before, _] = self.states();
+        self.cpu.step(action);
+        self.gpu.step(action);
+        let [cpu, gpu] = self.states();
         assert_eq!(cpu.step_counter, gpu.step_counter);
         for env in 0..ENVS {
             if self.parted.contains(&env) {
@@ -95,10 +78,15 @@ impl Pair {
                 state_f32::X | state_f32::Z => bar.place,
                 state_f32::HEADING_X | state_f32::HEADING_Z => bar.heading,
                 // A reward is as wrong as the distance, and each sum rounds.
-                state_f32::RETURN | state_f32::RETURNS => 200.0 * (bar.place + want.abs() * f32::EPSILON),
+                state_f32::RETURN | state_f32::RETURNS => {
+                    200.0 * (bar.place + want.abs() * f32::EPSILON)
+                }
                 _ => 0.0,
             };
-            let what = format!("step {}, environment {env}, field {field}", cpu.step_counter);
+            let what = format!(
+                "step {}, environment {env}, field {field}",
+                cpu.step_counter
+            );
             assert!(
                 (got - want).abs() <= allowed,
                 "{what}: {got} instead of {want} +- {allowed}"
@@ -141,24 +129,9 @@ impl Pair {
         }
     }
 
-    /// Straight to the target at a brisk pace, with a new policy's noise.
-    fn actions(&mut self, draw: &mut Draw) -> Vec<f32> {
-        let seen = read(self.cpu.observe()).expect("observation");
-        let scripted = Scripted {
-            database: &DATABASE,
-            speed: 2.0,
-        };
-        let mut action = scripted.act(&seen, BASE_OBS_DIM).expect("action");
-        for value in &mut action {
-            *value += 0.5 * draw.normal();
-        }
-        action
-    }
-
     fn compare_observations(&mut self) {
-        let [cpu, gpu] =
-            [&mut self.cpu, &mut self.gpu].map(|w| read(w.observe()).expect("observation"));
-        let [state, _] = self.snapshots();
+        let (cpu, gpu) = (self.cpu.observation(), self.gpu.observation());
+        let [state, _] = self.states();
         for env in (0..ENVS).filter(|env| !self.parted.contains(env)) {
             let part = env * BASE_OBS_DIM..(env + 1) * BASE_OBS_DIM;
             let (want, got) = (&cpu[part.clone()], &gpu[part]);
@@ -171,25 +144,27 @@ impl Pair {
         }
     }
 
-    /// Each world's tally is the sum of what its own environments counted.
-    fn compare_tallies(&mut self) {
-        let snapshots = self.snapshots();
-        for (world, before) in [&mut self.cpu, &mut self.gpu].into_iter().zip(snapshots) {
-            let sums = read(world.tally()).expect("sums");
-            let fields = [
-                state_u32::EPISODES,
-                state_u32::SUCCESSES,
-                state_u32::COLLISIONS,
-                state_u32::TRUNCATIONS,
-                state_u32::LENGTHS,
-            ];
-            for (sum, field) in sums.iter().zip(fields) {
-                let counted: u32 = before.state_u32[field * ENVS..(field + 1) * ENVS].iter().sum();
-                assert_eq!(*sum, counted as f32);
+    /// Each batch's statistics are sums of what its own environments counted.
+    fn compare_stats(&mut self) {
+        let states = self.states();
+        for (player, before) in [&mut self.cpu, &mut self.gpu].into_iter().zip(states) {
+            let stats = player.stats();
+            for (name, field) in [
+                ("episodes", state_u32::EPISODES),
+                ("successes", state_u32::SUCCESSES),
+                ("collision", state_u32::COLLISIONS),
+                ("truncation", state_u32::TRUNCATIONS),
+                ("steps", state_u32::LENGTHS),
+            ] {
+                let counted: u32 = before.state_u32[field * ENVS..(field + 1) * ENVS]
+                    .iter()
+                    .sum();
+                assert_eq!(stats.sum(name), f64::from(counted), "{name}");
             }
             let returns = &before.state_f32[state_f32::RETURNS * ENVS..];
             let sum: f64 = returns.iter().map(|&r| f64::from(r)).sum();
-            assert!((f64::from(sums[5]) - sum).abs() <= 256.0 * f64::from(f32::EPSILON) * sum);
+            let off = (stats.sum("returns") - sum).abs();
+            assert!(off <= 256.0 * f64::from(f32::EPSILON) * sum);
         }
     }
 }
@@ -217,11 +192,11 @@ fn a_thousand_steps_agree_on_gpu_and_cpu() {
     let mut pair = Pair::new();
     let mut draw = Draw::new(1);
     for step in 0..STEPS {
-        let action = pair.actions(&mut draw);
+        let action = pair.cpu.actions(&mut draw);
         pair.step(&action);
         if step % 50 == 0 {
             pair.compare_observations();
-            pair.compare_tallies();
+            pair.compare_stats();
         }
     }
     println!(
@@ -230,26 +205,4 @@ fn a_thousand_steps_agree_on_gpu_and_cpu() {
         pair.most
     );
     assert!(pair.parted.len() <= ENVS / 50, "{} ties", pair.parted.len());
-}
-
-#[test]
-fn the_same_actions_are_drawn_on_gpu_and_cpu() {
-    let mut pair = Pair::new();
-    let mut draw = Draw::new(2);
-    let (mean, log_std) = (draw.normals(ENVS * TRAJECTORY_DIM), draw.normals(TRAJECTORY_DIM));
-    let [want, got] = [0, 1].map(|at| {
-        let (world, device) = ([&mut pair.cpu, &mut pair.gpu], &pair.tensors[at]);
-        let mean = upload(mean.clone(), [ENVS, TRAJECTORY_DIM], device);
-        let [cpu, gpu] = world;
-        let world = if at == 0 { cpu } else { gpu };
-        let (action, log_prob) = world.act(mean, vector(&log_std, device));
-        (
-            read(action).expect("action"),
-            read(log_prob).expect("log_prob"),
-        )
-    });
-    for (want, got) in [(want.0, got.0), (want.1, got.1)] {
-        let fits = |(w, g): (&f32, &f32)| (w - g).abs() <= 1e-5 * w.abs().max(1.0);
-        assert!(want.iter().zip(&got).all(fits));
-    }
 }

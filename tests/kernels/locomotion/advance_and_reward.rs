@@ -6,9 +6,9 @@
 use crate::inputs::{
     Draw, POISON, POISON_WHOLE, SEEDS, SIZES, close, places_but, same, within_terms,
 };
+use footwork::kernels::locomotion::advance_and_reward;
 use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 use footwork::kernels::termination;
-use footwork::kernels::locomotion::advance_and_reward;
 use footwork::motion::database::RootMotion;
 
 struct Case {
@@ -75,7 +75,12 @@ impl Case {
     }
 
     fn agrees(&self) -> State {
-        let State { state_f32, state_u32, reward, termination } = &self.state;
+        let State {
+            state_f32,
+            state_u32,
+            reward,
+            termination,
+        } = &self.state;
         let forms = forms!(
             advance_and_reward, ADVANCE_AND_REWARD, self.envs(), self.params;
             self.candidates, self.matched, self.motion,
@@ -98,7 +103,8 @@ impl Case {
         let p = &self.params;
         let distance = |reals: &[f32]| {
             let at = |field: usize| reals[field * self.envs() + env];
-            (at(state_f32::TARGET_X) - at(state_f32::X)).hypot(at(state_f32::TARGET_Z) - at(state_f32::Z))
+            (at(state_f32::TARGET_X) - at(state_f32::X))
+                .hypot(at(state_f32::TARGET_Z) - at(state_f32::Z))
         };
         let (before, after) = (distance(&self.state.state_f32), distance(&want.state_f32));
         let near = p.near * (-after).exp();
@@ -127,12 +133,23 @@ impl Case {
         }
         for field in [state_f32::HEADING_X, state_f32::HEADING_Z] {
             let part = fields(field);
-            close(form, &got.state_f32[part.clone()], &want.state_f32[part], |_| {
-                within_terms(&[1.0])
-            });
+            close(
+                form,
+                &got.state_f32[part.clone()],
+                &want.state_f32[part],
+                |_| within_terms(&[1.0]),
+            );
         }
-        for field in [state_f32::TARGET_X, state_f32::TARGET_Z, state_f32::TRAVELLED] {
-            same(form, &got.state_f32[fields(field)], &want.state_f32[fields(field)]);
+        for field in [
+            state_f32::TARGET_X,
+            state_f32::TARGET_Z,
+            state_f32::TRAVELLED,
+        ] {
+            same(
+                form,
+                &got.state_f32[fields(field)],
+                &want.state_f32[fields(field)],
+            );
         }
         let offset = self.params.offset as usize;
         let gained = |i: usize| match i.checked_sub(offset) {
@@ -208,9 +225,13 @@ fn a_collision_comes_before_an_arrival_and_that_before_the_last_step() {
     case.fill(state_u32::EPISODE_STEP, 9);
     for env in 0..8 {
         let target = if env & 1 == 1 { 0.25 } else { 3.0 };
-        case.set(env, &[(state_f32::TARGET_X, target), (state_f32::TARGET_Z, 0.0)]);
+        case.set(
+            env,
+            &[(state_f32::TARGET_X, target), (state_f32::TARGET_Z, 0.0)],
+        );
         case.state.state_u32[state_u32::HAS_COLLIDED * 80 + env] = (env >> 1 & 1) as u32;
-        case.state.state_u32[state_u32::EPISODE_LIMIT * 80 + env] = if env & 4 == 4 { 10 } else { 11 };
+        case.state.state_u32[state_u32::EPISODE_LIMIT * 80 + env] =
+            if env & 4 == 4 { 10 } else { 11 };
     }
     let after = case.agrees();
     let (reached, struck) = ((termination::SUCCESS, 10.0), (termination::FAILED, -5.0));
@@ -234,9 +255,22 @@ fn standing(envs: usize) -> Case {
         length: 0.0,
     });
     for env in 0..envs {
-        case.set(env, &[(state_f32::X, 0.0), (state_f32::Z, 0.0), (state_f32::RETURN, 0.0)]);
-        case.set(env, &[(state_f32::HEADING_X, 0.0), (state_f32::HEADING_Z, 1.0)]);
-        case.set(env, &[(state_f32::TARGET_X, 3.0), (state_f32::TARGET_Z, -4.0)]);
+        case.set(
+            env,
+            &[
+                (state_f32::X, 0.0),
+                (state_f32::Z, 0.0),
+                (state_f32::RETURN, 0.0),
+            ],
+        );
+        case.set(
+            env,
+            &[(state_f32::HEADING_X, 0.0), (state_f32::HEADING_Z, 1.0)],
+        );
+        case.set(
+            env,
+            &[(state_f32::TARGET_X, 3.0), (state_f32::TARGET_Z, -4.0)],
+        );
     }
     case
 }
@@ -291,7 +325,10 @@ fn survives_degenerate_headings() {
     }
     // Huge and lost headings move the character as far: only the heading is compared there.
     for env in [4, 5] {
-        case.set(env, &[(state_f32::TARGET_X, 1e12), (state_f32::TARGET_Z, 0.0)]);
+        case.set(
+            env,
+            &[(state_f32::TARGET_X, 1e12), (state_f32::TARGET_Z, 0.0)],
+        );
         case.motion[case.matched[env] as usize].moved = [0.0; 2];
     }
     case.agrees();
@@ -300,7 +337,10 @@ fn survives_degenerate_headings() {
 #[test]
 fn all_end_or_none_ends() {
     let mut case = standing(130);
-    assert!(case.agrees().termination[case.params.offset as usize..][..130] != [termination::SUCCESS; 130]);
+    assert!(
+        case.agrees().termination[case.params.offset as usize..][..130]
+            != [termination::SUCCESS; 130]
+    );
     case.params.reach = 5.0;
     assert_eq!(
         case.agrees().termination[case.params.offset as usize..][..130],

@@ -39,8 +39,11 @@ fn agrees_with_its_twin_and_the_definition() {
             let queries = agrees(envs, &features, &state_u32, &action, action_at);
             let actions = action[action_at..].chunks(TRAJECTORY_DIM);
             for (env, (row, action)) in queries.iter().zip(actions).enumerate() {
-                assert_eq!(row[..POSE_DIM], features[state_u32[env] as usize][..POSE_DIM]);
-                assert_eq!(row[POSE_DIM..FEATURE_DIM], action);
+                assert_eq!(
+                    row[..POSE_DIM],
+                    features[state_u32[env] as usize][..POSE_DIM]
+                );
+                assert_eq!(row[POSE_DIM..FEATURE_DIM], *action);
                 assert_eq!(row[FEATURE_DIM], 1.0);
             }
         }

@@ -3,8 +3,8 @@
 //! order, within (n - 1) roundings of the sum of absolute returns (Higham, section 4.2).
 
 use crate::inputs::{Draw, SEEDS, SIZES, close, same};
-use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 use footwork::kernels::locomotion::episode_stats::{self, SUMS};
+use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 
 /// What is counted, in the order of the sums.
 const COUNTS: [usize; 5] = [
@@ -40,7 +40,11 @@ fn agrees_with_its_twin_on_random_states() {
         for envs in SIZES.into_iter().chain([4096, 10_000]) {
             let (state_f32, state_u32) = Draw::new(seed).state(envs, 1000);
             let sums = agrees(envs, &state_f32, &state_u32);
-            let count = |field: usize| state_u32[field * envs..(field + 1) * envs].iter().sum::<u32>();
+            let count = |field: usize| {
+                state_u32[field * envs..(field + 1) * envs]
+                    .iter()
+                    .sum::<u32>()
+            };
             for (sum, field) in sums.into_iter().zip(COUNTS) {
                 assert_eq!(sum, count(field) as f32);
             }

@@ -2,12 +2,12 @@
 //! Bar: 4 roundings of the way and the square's circumference; a velocity's sign may differ only
 //! that near to a wall. What no arithmetic rounds is equal bit for bit.
 
+use crate::inputs::{Draw, SIZES, same};
 use crate::support::geometry::bounced;
 use crate::support::ground::{COUNTS, Ground, SQUARE};
-use crate::inputs::{Draw, SIZES, same};
 use footwork::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, boxes};
-use footwork::kernels::locomotion::obstacles::bounce;
 use footwork::kernels::locomotion::move_obstacles;
+use footwork::kernels::locomotion::obstacles::bounce;
 
 struct Case {
     ground: Ground,
@@ -42,9 +42,14 @@ impl Case {
 
     fn judge(&self, form: &str, (got_boxes, got_drift): &Moved) {
         let (ground, count) = (&self.ground, self.ground.count);
-        let (mut boxes, mut obstacle_velocity) = (ground.boxes.clone(), ground.obstacle_velocity.clone());
+        let (mut boxes, mut obstacle_velocity) =
+            (ground.boxes.clone(), ground.obstacle_velocity.clone());
         for i in 0..ground.envs * VELOCITY_DIM * count {
-            let (env, axis, slot) = (i / count / VELOCITY_DIM, i / count % VELOCITY_DIM, i % count);
+            let (env, axis, slot) = (
+                i / count / VELOCITY_DIM,
+                i / count % VELOCITY_DIM,
+                i % count,
+            );
             let at = (env * boxes::FIELDS + axis) * count + slot;
             let found = (got_boxes[at], got_drift[i]);
             let from = (ground.boxes[at], ground.obstacle_velocity[i]);

@@ -2,10 +2,12 @@
 //! Bar: the pose is a copy; the goal, two products a number, within 4 roundings of the larger.
 
 use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, same, within_terms};
-use footwork::kernels::locomotion::locomotion_layout::{CELLS, BASE_OBS_DIM, TARGET_SCALE, MAP_WORDS, MAPS, MAP_OBS_DIM, state_f32};
-use footwork::kernels::termination;
+use footwork::kernels::locomotion::locomotion_layout::{
+    BASE_OBS_DIM, CELLS, MAP_OBS_DIM, MAP_WORDS, MAPS, TARGET_SCALE, state_f32,
+};
 use footwork::kernels::locomotion::observe;
 use footwork::kernels::locomotion::rasterize_maps::cell;
+use footwork::kernels::termination;
 use footwork::motion::features::{POSE_DIM, ROW_STRIDE};
 
 const FRAMES: usize = 500;
@@ -71,7 +73,10 @@ impl Case {
         let at = |field: usize| self.state_f32[field * self.envs() + env];
         let away = (at(state_f32::TARGET_X) - at(state_f32::X)).abs();
         let away = away.max((at(state_f32::TARGET_Z) - at(state_f32::Z)).abs());
-        away * at(state_f32::HEADING_X).abs().max(at(state_f32::HEADING_Z).abs()) * TARGET_SCALE
+        away * at(state_f32::HEADING_X)
+            .abs()
+            .max(at(state_f32::HEADING_Z).abs())
+            * TARGET_SCALE
     }
 
     fn agrees(&self) -> Vec<f32> {
@@ -83,13 +88,20 @@ impl Case {
             self.features, self.state_f32, self.state_u32, self.termination, self.maps, out numbers
         );
         for (form, got) in forms.shaders() {
-            let rows = got.chunks(self.width()).zip(forms.twin.chunks(self.width()));
+            let rows = got
+                .chunks(self.width())
+                .zip(forms.twin.chunks(self.width()));
             for (row, (got, want)) in rows.enumerate() {
                 same(form, &got[..POSE_DIM], &want[..POSE_DIM]);
-                close(form, &got[POSE_DIM..BASE_OBS_DIM], &want[POSE_DIM..BASE_OBS_DIM], |_| {
-                    self.env(row)
-                        .map_or(0.0, |env| within_terms(&[self.largest(env)]))
-                });
+                close(
+                    form,
+                    &got[POSE_DIM..BASE_OBS_DIM],
+                    &want[POSE_DIM..BASE_OBS_DIM],
+                    |_| {
+                        self.env(row)
+                            .map_or(0.0, |env| within_terms(&[self.largest(env)]))
+                    },
+                );
                 same(form, &got[BASE_OBS_DIM..], &want[BASE_OBS_DIM..]);
             }
         }
@@ -124,7 +136,11 @@ fn writes_only_the_rows_that_ended_as_asked() {
     case.termination.fill(termination::SUCCESS);
     assert!(case.agrees().iter().all(|&o| o == POISON));
     case.termination.fill(termination::TRUNCATED);
-    assert!(case.agrees()[..65 * BASE_OBS_DIM].iter().all(|&o| o != POISON));
+    assert!(
+        case.agrees()[..65 * BASE_OBS_DIM]
+            .iter()
+            .all(|&o| o != POISON)
+    );
 }
 
 #[test]
@@ -167,7 +183,9 @@ fn only_whole_rows_that_ended_as_asked_are_written() {
         let seen = case.agrees();
         for (row, seen) in seen.chunks(case.width()).enumerate() {
             let termination = |env: usize| case.termination[case.params.offset as usize + env];
-            let written = case.env(row).is_some_and(|env| ends & 1 << termination(env) != 0);
+            let written = case
+                .env(row)
+                .is_some_and(|env| ends & 1 << termination(env) != 0);
             assert!(seen.iter().all(|&o| (o != POISON) == written), "row {row}");
         }
     }

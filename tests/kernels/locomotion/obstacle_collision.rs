@@ -2,12 +2,12 @@
 //! shader are both judged by it.
 //! Bar: none where no arithmetic rounds; else 1e-5 m from an edge.
 
-use crate::support::geometry::{Stance, depth, right};
-use crate::support::forms::Forms;
-use crate::support::ground::{COUNTS, GRAIN, Ground, SQUARE};
 use crate::inputs::{Draw, POISON_WHOLE, SIZES, places_but};
-use footwork::kernels::locomotion::obstacle_collision;
+use crate::support::forms::Forms;
+use crate::support::geometry::{Stance, depth, right};
+use crate::support::ground::{COUNTS, GRAIN, Ground, SQUARE};
 use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
+use footwork::kernels::locomotion::obstacle_collision;
 
 const FRAMES: usize = 600;
 
@@ -120,7 +120,10 @@ fn agrees_with_geometry_in_all_worlds() {
 /// A character that stands at `x` on the square's edge, and a box of no size that runs towards it.
 fn met(x: f32, from: f32, grains_a_frame: f32) -> bool {
     let mut ground = Ground::new(1, 1, 1, true);
-    (ground.state_f32[state_f32::X], ground.state_f32[state_f32::Z]) = (x, 0.0);
+    (
+        ground.state_f32[state_f32::X],
+        ground.state_f32[state_f32::Z],
+    ) = (x, 0.0);
     ground.boxes[..4].copy_from_slice(&[from, 0.0, 0.0, 0.0]);
     ground.obstacle_velocity[..2].copy_from_slice(&[32.0 * GRAIN * grains_a_frame, 0.0]);
     let mut case = Case::new(ground, 1);

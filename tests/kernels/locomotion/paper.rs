@@ -3,12 +3,11 @@
 
 use crate::inputs::Draw;
 use crate::support::database::DATABASE;
-use footwork::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, state_f32, state_u32};
-use footwork::kernels::termination;
-use footwork::kernels::locomotion::{observe, advance_and_reward};
-use footwork::motion::database::Database;
-use footwork::motion::features::{FRAMES_PER_STEP, MIN_FUTURE_FRAMES, POSE_DIM};
 use footwork::env::locomotion::Plane;
+use footwork::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, state_f32, state_u32};
+use footwork::kernels::locomotion::{advance_and_reward, observe};
+use footwork::kernels::termination;
+use footwork::motion::features::{FRAMES_PER_STEP, MIN_FUTURE_FRAMES, POSE_DIM};
 
 const ENVS: usize = 2000;
 
@@ -30,7 +29,12 @@ impl Stance {
     }
 
     fn of_env(reals: &[f32], env: usize) -> Self {
-        let fields = [state_f32::X, state_f32::Z, state_f32::HEADING_X, state_f32::HEADING_Z];
+        let fields = [
+            state_f32::X,
+            state_f32::Z,
+            state_f32::HEADING_X,
+            state_f32::HEADING_Z,
+        ];
         Stance::of(fields.map(|field| reals[field * ENVS + env]))
     }
 
@@ -73,7 +77,7 @@ impl Worlds {
     }
 
     fn step(&mut self, matched: &[u32]) {
-        let Plane { reach, bonus, .. } = Plane::default();
+        let task = Plane::default();
         advance_and_reward::twin(
             &DATABASE.candidates,
             matched,
@@ -85,12 +89,12 @@ impl Worlds {
             &advance_and_reward::Params {
                 envs: ENVS as u32,
                 offset: 0,
-                reach,
+                reach: task.success_radius,
                 near: 1.0,
                 progress: 0.0,
                 clear: 0.0,
                 shift: 0.0,
-                bonus,
+                bonus: task.success_bonus,
                 crash: 0.0,
             },
         );
@@ -101,7 +105,10 @@ impl Worlds {
 fn the_task_is_the_papers() {
     let task = Plane::default();
     assert_eq!((task.success_radius, task.success_bonus), (0.5, 1000.0));
-    assert_eq!((task.target_extent, task.max_steps, FRAMES_PER_STEP), (5.0, 200, 6));
+    assert_eq!(
+        (task.target_extent, task.max_steps, FRAMES_PER_STEP),
+        (5.0, 200, 6)
+    );
 }
 
 #[test]
@@ -123,7 +130,10 @@ fn a_step_plays_six_frames_of_the_recorded_path() {
             "{env}"
         );
         assert!(same_angle(got.angle, expected.angle), "{env}");
-        assert_eq!(worlds.state_u32[state_u32::FRAME * ENVS + env], frame as u32 + 6);
+        assert_eq!(
+            worlds.state_u32[state_u32::FRAME * ENVS + env],
+            frame as u32 + 6
+        );
         let length: f64 = (frame..frame + 6)
             .map(|f| (path(f + 1).x - path(f).x).hypot(path(f + 1).z - path(f).z))
             .sum();
@@ -139,16 +149,23 @@ fn rewards_and_ends_are_those_of_equation_3() {
     let matched = vec![0; ENVS];
     for env in 0..ENVS {
         // Near enough that many arrive.
-        for (target, place) in [(state_f32::TARGET_X, state_f32::X), (state_f32::TARGET_Z, state_f32::Z)] {
-            worlds.state_f32[target * ENVS + env] = worlds.state_f32[place * ENVS + env] + draw.within(1.0);
+        for (target, place) in [
+            (state_f32::TARGET_X, state_f32::X),
+            (state_f32::TARGET_Z, state_f32::Z),
+        ] {
+            worlds.state_f32[target * ENVS + env] =
+                worlds.state_f32[place * ENVS + env] + draw.within(1.0);
         }
     }
-    let ages = worlds.state_u32[state_u32::EPISODE_STEP * ENVS..(state_u32::EPISODE_STEP + 1) * ENVS].to_vec();
+    let ages = worlds.state_u32
+        [state_u32::EPISODE_STEP * ENVS..(state_u32::EPISODE_STEP + 1) * ENVS]
+        .to_vec();
     worlds.step(&matched);
     let mut ends = [0; 3];
     for (env, age) in ages.into_iter().enumerate() {
         let at = |field: usize| f64::from(worlds.state_f32[field * ENVS + env]);
-        let g = (at(state_f32::TARGET_X) - at(state_f32::X)).hypot(at(state_f32::TARGET_Z) - at(state_f32::Z));
+        let g = (at(state_f32::TARGET_X) - at(state_f32::X))
+            .hypot(at(state_f32::TARGET_Z) - at(state_f32::Z));
         if (g - 0.5).abs() < 1e-5 {
             continue;
         }
@@ -179,13 +196,20 @@ fn an_episode_is_truncated_after_200_steps() {
             termination::TRUNCATED
         };
         assert!(
-            worlds.termination.iter().all(|&termination| termination == expected),
+            worlds
+                .termination
+                .iter()
+                .all(|&termination| termination == expected),
             "step {step}"
         );
     }
     let count = |field: usize| &worlds.state_u32[field * ENVS..(field + 1) * ENVS];
     assert!(count(state_u32::LENGTHS).iter().all(|&steps| steps == 200));
-    assert!(count(state_u32::EPISODES).iter().all(|&episodes| episodes == 1));
+    assert!(
+        count(state_u32::EPISODES)
+            .iter()
+            .all(|&episodes| episodes == 1)
+    );
     assert!(count(state_u32::TRUNCATIONS).iter().all(|&ends| ends == 1));
     for field in [state_u32::SUCCESSES, state_u32::COLLISIONS] {
         assert!(count(field).iter().all(|&ends| ends == 0));
@@ -230,7 +254,10 @@ fn an_observation_is_the_pose_and_a_fifth_of_the_way_to_the_target() {
         );
         let stance = Stance::of_env(&worlds.state_f32, env);
         let at = |field: usize| f64::from(worlds.state_f32[field * ENVS + env]);
-        let (x, z) = (at(state_f32::TARGET_X) - stance.x, at(state_f32::TARGET_Z) - stance.z);
+        let (x, z) = (
+            at(state_f32::TARGET_X) - stance.x,
+            at(state_f32::TARGET_Z) - stance.z,
+        );
         // Forward is the heading, left is a quarter turn from it.
         let bearing = x.atan2(z) - stance.angle;
         let goal = [bearing.sin(), bearing.cos()].map(|part| part * x.hypot(z) / 5.0);

@@ -1,10 +1,12 @@
 //! Oracle: cell centres and boxes in f64, see `geometry`; twin and shader are both judged by it.
 //! Bar: none where no arithmetic rounds but that of a cell to its byte; else 1e-5 m.
 
+use crate::inputs::{Draw, SEEDS};
 use crate::support::geometry::{Obstacle, depth, right};
 use crate::support::ground::{COUNTS, Ground, SQUARE};
-use crate::inputs::{Draw, SEEDS};
-use footwork::kernels::locomotion::locomotion_layout::{CELLS, FULL, MAP_WORDS, boxes, state_f32, state_u32};
+use footwork::kernels::locomotion::locomotion_layout::{
+    CELLS, FULL, MAP_WORDS, boxes, state_f32, state_u32,
+};
 use footwork::kernels::locomotion::rasterize_maps::{self, cell};
 
 /// Batch sizes around the workgroup's 64 rows of a map.
@@ -65,8 +67,8 @@ impl Case {
     fn judge(&self, form: &str, got: &[u32]) {
         let (before, after) = (self.maps.chunks(MAP_WORDS), got.chunks(MAP_WORDS));
         for (env, (before, after)) in before.zip(after).enumerate() {
-            let written =
-                env < self.ground.envs && self.ground.just_reset(env) == (self.params.just_reset == 1);
+            let written = env < self.ground.envs
+                && self.ground.just_reset(env) == (self.params.just_reset == 1);
             if !written {
                 assert_eq!(before, after, "{form}: environment {env}");
                 continue;
@@ -155,7 +157,10 @@ fn alone(centre: [f32; 2], half: [f32; 2], heading: [f32; 2]) -> Case {
     for (field, value) in [(state_f32::X, 0.0), (state_f32::Z, 0.0)] {
         ground.state_f32[field] = value;
     }
-    (ground.state_f32[state_f32::HEADING_X], ground.state_f32[state_f32::HEADING_Z]) = (heading[0], heading[1]);
+    (
+        ground.state_f32[state_f32::HEADING_X],
+        ground.state_f32[state_f32::HEADING_Z],
+    ) = (heading[0], heading[1]);
     (ground.boxes[boxes::X], ground.boxes[boxes::Z]) = (centre[0], centre[1]);
     (ground.boxes[boxes::HALF_X], ground.boxes[boxes::HALF_Z]) = (half[0], half[1]);
     Case::new(ground, true, [0.0; 2])

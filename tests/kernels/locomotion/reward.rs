@@ -3,12 +3,12 @@
 
 use crate::inputs::Draw;
 use crate::support::database::DATABASE;
-use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
-use footwork::kernels::termination;
-use footwork::kernels::locomotion::advance_and_reward;
 use footwork::env::locomotion::kernel_params::KernelParams;
 use footwork::env::locomotion::task::Reward;
-use footwork::env::locomotion::{Obstacles, Task};
+use footwork::env::locomotion::{EnvConfig, LocomotionTask, Obstacles};
+use footwork::kernels::locomotion::advance_and_reward;
+use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
+use footwork::kernels::termination;
 
 const ENVS: usize = 2000;
 
@@ -39,7 +39,10 @@ impl Worlds {
         let mut draw = Draw::new(1);
         let (mut state_f32, mut state_u32) = draw.state(ENVS, DATABASE.frames());
         for env in 0..ENVS {
-            for (target, place) in [(state_f32::TARGET_X, state_f32::X), (state_f32::TARGET_Z, state_f32::Z)] {
+            for (target, place) in [
+                (state_f32::TARGET_X, state_f32::X),
+                (state_f32::TARGET_Z, state_f32::Z),
+            ] {
                 state_f32[target * ENVS + env] = state_f32[place * ENVS + env] + draw.within(1.5);
             }
             state_u32[state_u32::HAS_COLLIDED * ENVS + env] = u32::from(draw.below(4) == 0);
@@ -70,7 +73,8 @@ impl Worlds {
     /// Distance to the target in a state.
     fn distance(reals: &[f32], env: usize) -> f64 {
         let at = |field: usize| f64::from(reals[field * ENVS + env]);
-        (at(state_f32::TARGET_X) - at(state_f32::X)).hypot(at(state_f32::TARGET_Z) - at(state_f32::Z))
+        (at(state_f32::TARGET_X) - at(state_f32::X))
+            .hypot(at(state_f32::TARGET_Z) - at(state_f32::Z))
     }
 
     fn count(&self, field: usize, env: usize) -> u32 {
@@ -79,8 +83,12 @@ impl Worlds {
 
     /// How a step has to end: a collision counts before an arrival, that before the last step.
     fn expected(&self, env: usize, distance: f64) -> u32 {
-        let out_of_time = self.count(state_u32::EPISODE_STEP, env) >= self.count(state_u32::EPISODE_LIMIT, env);
-        match (self.count(state_u32::HAS_COLLIDED, env) == 1, distance <= 0.5) {
+        let out_of_time =
+            self.count(state_u32::EPISODE_STEP, env) >= self.count(state_u32::EPISODE_LIMIT, env);
+        match (
+            self.count(state_u32::HAS_COLLIDED, env) == 1,
+            distance <= 0.5,
+        ) {
             (true, _) => termination::FAILED,
             (false, true) => termination::SUCCESS,
             _ if out_of_time => termination::TRUNCATED,
@@ -142,7 +150,11 @@ impl Worlds {
             _ => self.count(state_u32::EPISODE_STEP, env),
         };
         assert_eq!(gained(state_u32::LENGTHS), length);
-        for field in [state_u32::EPISODE_LIMIT, state_u32::HITS, state_u32::HAS_COLLIDED] {
+        for field in [
+            state_u32::EPISODE_LIMIT,
+            state_u32::HITS,
+            state_u32::HAS_COLLIDED,
+        ] {
             assert_eq!(gained(field), 0);
         }
     }
@@ -199,17 +211,13 @@ fn every_weight_by_itself_and_all_together() {
 
 /// The parameters of a reading of the task.
 fn weights(task: Obstacles) -> advance_and_reward::Params {
-    let rules = KernelParams {
-        task: Task::Obstacles(task),
+    let config = EnvConfig {
+        task: LocomotionTask::Obstacles(task),
         envs: ENVS,
-        first: 0,
-        horizon: 8,
-        candidates: 1,
         seed: 0,
-        step_counter: 0,
         level: 9,
     };
-    rules.step()
+    KernelParams::new(&config, 0, 1).advance_and_reward()
 }
 
 #[test]

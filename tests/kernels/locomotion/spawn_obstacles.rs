@@ -3,8 +3,8 @@
 
 use crate::inputs::{Draw, POISON, SEEDS, SIZES, close, same, within_terms};
 use footwork::kernels::locomotion::locomotion_layout::{VELOCITY_DIM, boxes};
-use footwork::kernels::termination;
 use footwork::kernels::locomotion::spawn_obstacles;
+use footwork::kernels::termination;
 
 struct Case {
     termination: Vec<u32>,

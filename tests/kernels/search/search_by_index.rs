@@ -4,10 +4,7 @@
 //! the limit but for rounding; `search_leaves` finds the twin's candidates, and `search_argmin` gives the
 //! twin's bits. Distances have eight roundings: adapters may or may not fuse products into sums.
 
-use crate::checked;
-use crate::inputs::{Draw, POISON, POISON_WHOLE, SIZES, close, gpu};
-use bytemuck::cast_slice;
-use footwork::gpu::{Buffer, shader};
+use crate::inputs::{Draw, SIZES, close};
 use footwork::kernels::search::search_exact::squared;
 use footwork::kernels::search::search_index::{GROUP, LANES, PROJECTION_LEN};
 use footwork::kernels::search::{search_argmin, search_leaves, search_prune, search_seed};
@@ -66,15 +63,6 @@ impl Case {
         self.leaves().div_ceil(32)
     }
 
-    fn poison(&self) -> Known {
-        let lanes = LANES * self.count();
-        Known {
-            query_projection: vec![POISON; PROJECTION_LEN * self.count()],
-            distance: vec![POISON; lanes],
-            candidates: vec![POISON_WHOLE; lanes],
-        }
-    }
-
     fn seed(&self) -> search_seed::Params {
         search_seed::Params {
             count: self.count() as u32,
@@ -108,27 +96,28 @@ impl Case {
         }
     }
 
-    fn boxes(&self) -> &[[f32; TRAJECTORY_DIM]] {
-        &self.packed.boxes
-    }
-
-    fn seed_twin(&self) -> Known {
-        let mut known = self.poison();
-        search_seed::twin(
-            &self.packed.rows,
-            self.boxes(),
-            &self.packed.distance_codes,
-            &self.shown,
-            &self.queries,
-            &mut known.query_projection,
-            &mut known.distance,
-            &mut known.candidates,
-            &self.seed(),
+    /// What `search_seed` makes of the queries, by the twin.
+    fn seed_agrees(&self) -> Known {
+        let (packed, count) = (&self.packed, self.count());
+        let lanes = LANES * count;
+        let groups = [count.div_ceil(32) as u32, 1, 1];
+        let forms = forms!(
+            search_seed, SEARCH_SEED, groups, self.seed();
+            packed.rows, packed.boxes, packed.distance_codes, self.shown, self.queries,
+            out PROJECTION_LEN * count, out lanes, out lanes
         );
-        known
+        let forms = forms.map(|(query_projection, distance, candidates)| Known {
+            query_projection,
+            distance,
+            candidates,
+        });
+        for (_, got) in forms.shaders() {
+            self.seed_is_right(&forms.twin, got);
+        }
+        forms.twin
     }
 
-    fn seed_agrees(&self, twin: &Known, got: &Known) {
+    fn seed_is_right(&self, twin: &Known, got: &Known) {
         let count = self.count();
         close(
             "query_projection",
@@ -154,185 +143,61 @@ impl Case {
         assert!(others * 100 <= count, "{others} of {count}");
     }
 
-    fn seed_shader_agrees(&self, twin: &Known) {
-        let gpu = gpu();
-        let known = self.poison();
-        let query_projection = Buffer::from_slice(&gpu, &known.query_projection);
-        let distance = Buffer::from_slice(&gpu, &known.distance);
-        let candidates = Buffer::from_slice(&gpu, &known.candidates);
-        search_seed::launch(
-            &gpu,
-            &Buffer::from_slice(&gpu, self.packed.rows.as_flattened()),
-            &Buffer::from_slice(&gpu, self.boxes().as_flattened()),
-            &self.codes(&gpu),
-            &Buffer::from_slice(&gpu, &self.shown),
-            &Buffer::from_slice(&gpu, self.queries.as_flattened()),
-            &query_projection,
-            &distance,
-            &candidates,
-            &self.seed(),
-        );
-        let got = Known {
-            query_projection: query_projection.read(&gpu).expect("numbers"),
-            distance: distance.read(&gpu).expect("distances"),
-            candidates: candidates.read(&gpu).expect("candidates"),
-        };
-        self.seed_agrees(twin, &got);
-        let buffers: [&[u8]; 8] = [
-            cast_slice(&self.packed.rows),
-            cast_slice(self.boxes()),
-            &self.packed.distance_codes,
-            cast_slice(&self.shown),
-            cast_slice(&self.queries),
-            cast_slice(&known.query_projection),
-            cast_slice(&known.distance),
-            cast_slice(&known.candidates),
-        ];
-        let groups = [self.count().div_ceil(32) as u32, 1, 1];
-        let checked = checked::run(&shader::SEARCH_SEED, groups, &buffers, &self.seed());
-        let got = Known {
-            query_projection: checked.of(5),
-            distance: checked.of(6),
-            candidates: checked.of(7),
-        };
-        self.seed_agrees(twin, &got);
-    }
-
-    fn codes(&self, gpu: &footwork::gpu::Gpu) -> Buffer<u32> {
-        Buffer::from_slice(
-            gpu,
-            &bytemuck::pod_collect_to_vec(&self.packed.distance_codes),
-        )
-    }
-
-    fn prune_twin(&self, known: &Known) -> Vec<u32> {
-        let mut leaf_mask = vec![POISON_WHOLE; self.words() * self.count()];
-        search_prune::twin(
-            self.boxes(),
-            &self.packed.distance_codes,
-            &self.shown,
-            &known.query_projection,
-            &known.distance,
-            &mut leaf_mask,
-            &self.prune(),
-        );
-        leaf_mask
-    }
-
-    /// All but one leaf in ten thousand, which may lie at the limit.
-    fn prune_agrees(&self, twin: &[u32], got: &[u32]) {
-        let differ = twin.iter().zip(got).map(|(t, g)| (t ^ g).count_ones());
-        let (differ, all) = (differ.sum::<u32>(), self.leaves() * self.count());
-        assert!(differ as usize <= all / 10_000, "{differ} of {all}");
-    }
-
-    fn prune_shader_agrees(&self, known: &Known, twin: &[u32]) {
-        let gpu = gpu();
-        let poison = vec![POISON_WHOLE; twin.len()];
-        let leaf_mask = Buffer::from_slice(&gpu, &poison);
-        search_prune::launch(
-            &gpu,
-            &Buffer::from_slice(&gpu, self.boxes().as_flattened()),
-            &self.codes(&gpu),
-            &Buffer::from_slice(&gpu, &self.shown),
-            &Buffer::from_slice(&gpu, &known.query_projection),
-            &Buffer::from_slice(&gpu, &known.distance),
-            &leaf_mask,
-            &self.prune(),
-        );
-        self.prune_agrees(twin, &leaf_mask.read(&gpu).expect("bits"));
-        let buffers: [&[u8]; 6] = [
-            cast_slice(self.boxes()),
-            &self.packed.distance_codes,
-            cast_slice(&self.shown),
-            cast_slice(&known.query_projection),
-            cast_slice(&known.distance),
-            cast_slice(&poison),
-        ];
+    /// The leaves that `search_prune` leaves, by the twin. All but one in ten thousand are the same, which
+    /// may lie at the limit.
+    fn prune_agrees(&self, known: &Known) -> Vec<u32> {
+        let (packed, all) = (&self.packed, self.leaves() * self.count());
         let runs = self.leaves().div_ceil(64) as u32;
         let groups = [self.count().div_ceil(128) as u32, runs, 1];
-        let checked = checked::run(&shader::SEARCH_PRUNE, groups, &buffers, &self.prune());
-        self.prune_agrees(twin, &checked.of::<u32>(5));
+        let forms = forms!(
+            search_prune, SEARCH_PRUNE, groups, self.prune();
+            packed.boxes, packed.distance_codes, self.shown, known.query_projection, known.distance,
+            out self.words() * self.count()
+        );
+        for (form, got) in forms.shaders() {
+            let differ = forms
+                .twin
+                .iter()
+                .zip(got)
+                .map(|(t, g)| (t ^ g).count_ones());
+            let differ = differ.sum::<u32>();
+            assert!(differ as usize <= all / 10_000, "{form}: {differ} of {all}");
+        }
+        forms.twin
     }
 
-    fn leaves_twin(&self, known: &mut Known, leaf_mask: &[u32]) {
-        search_leaves::twin(
-            &self.packed.rows,
-            &self.packed.quantised_rows,
-            &self.queries,
-            &known.query_projection,
-            leaf_mask,
-            &mut known.distance,
-            &mut known.candidates,
-            &self.leaf(),
+    /// What `search_leaves` makes of what is known, by the twin.
+    fn leaves_agree(&self, known: &Known, leaf_mask: &[u32]) -> Known {
+        let packed = &self.packed;
+        let forms = forms!(
+            search_leaves, SEARCH_LEAVES, LANES * self.count(), self.leaf();
+            packed.rows, packed.quantised_rows, self.queries, known.query_projection, leaf_mask,
+            mut known.distance, mut known.candidates
         );
-    }
-
-    fn leaves_shader_agrees(&self, known: &Known, leaf_mask: &[u32], twin: &Known) {
-        let gpu = gpu();
-        let quantised_rows = bytemuck::pod_collect_to_vec(&self.packed.quantised_rows);
-        let distance = Buffer::from_slice(&gpu, &known.distance);
-        let candidates = Buffer::from_slice(&gpu, &known.candidates);
-        search_leaves::launch(
-            &gpu,
-            &Buffer::from_slice(&gpu, self.packed.rows.as_flattened()),
-            &Buffer::from_slice(&gpu, &quantised_rows),
-            &Buffer::from_slice(&gpu, self.queries.as_flattened()),
-            &Buffer::from_slice(&gpu, &known.query_projection),
-            &Buffer::from_slice(&gpu, leaf_mask),
-            &distance,
-            &candidates,
-            &self.leaf(),
-        );
-        let close = |got: &[f32]| {
-            close("distance", got, &twin.distance, |i| {
-                ROUNDING * twin.distance[i]
-            });
-        };
-        close(&distance.read(&gpu).expect("distances"));
-        assert_eq!(candidates.read(&gpu).expect("candidates"), twin.candidates);
-        let buffers: [&[u8]; 7] = [
-            cast_slice(&self.packed.rows),
-            cast_slice(&self.packed.quantised_rows),
-            cast_slice(&self.queries),
-            cast_slice(&known.query_projection),
-            cast_slice(leaf_mask),
-            cast_slice(&known.distance),
-            cast_slice(&known.candidates),
-        ];
-        let groups = [(LANES * self.count()).div_ceil(64) as u32, 1, 1];
-        let checked = checked::run(&shader::SEARCH_LEAVES, groups, &buffers, &self.leaf());
-        close(&checked.of(5));
-        assert_eq!(checked.of::<u32>(6), twin.candidates);
+        let (distance, candidates) = &forms.twin;
+        for (form, got) in forms.shaders() {
+            close(form, &got.0, distance, |i| ROUNDING * distance[i]);
+            assert_eq!(got.1, *candidates, "{form}");
+        }
+        let (distance, candidates) = forms.twin;
+        Known {
+            query_projection: known.query_projection.clone(),
+            distance,
+            candidates,
+        }
     }
 
     fn argmin_agrees(&self, known: &Known) {
-        let gpu = gpu();
         let count = self.count();
         let params = search_argmin::Params {
             count: count as u32,
         };
-        // Some too many: they must stay untouched.
-        let poison = vec![POISON_WHOLE; count + 9];
-        let mut twin = poison.clone();
-        search_argmin::twin(&known.distance, &known.candidates, &mut twin, &params);
-        let matched = Buffer::from_slice(&gpu, &poison);
-        search_argmin::launch(
-            &gpu,
-            &Buffer::from_slice(&gpu, &known.distance),
-            &Buffer::from_slice(&gpu, &known.candidates),
-            &matched,
-            &params,
+        let forms = forms!(
+            search_argmin, SEARCH_ARGMIN, count, params; known.distance, known.candidates, out count
         );
-        assert_eq!(matched.read(&gpu).expect("matches"), twin);
-        let buffers: [&[u8]; 3] = [
-            cast_slice(&known.distance),
-            cast_slice(&known.candidates),
-            cast_slice(&poison),
-        ];
-        let groups = [count.div_ceil(64) as u32, 1, 1];
-        let checked = checked::run(&shader::SEARCH_ARGMIN, groups, &buffers, &params);
-        assert_eq!(checked.of::<u32>(2), twin);
+        for (form, got) in forms.shaders() {
+            assert_eq!(*got, forms.twin, "{form}");
+        }
     }
 }
 
@@ -346,13 +211,9 @@ fn each_agrees_with_its_twin() {
             (9000, DEFAULT_TABLE_BYTES),
         ] {
             let case = Case::new(count, rows, memory, seed);
-            let first = case.seed_twin();
-            case.seed_shader_agrees(&first);
-            let leaf_mask = case.prune_twin(&first);
-            case.prune_shader_agrees(&first, &leaf_mask);
-            let mut last = first.clone();
-            case.leaves_twin(&mut last, &leaf_mask);
-            case.leaves_shader_agrees(&first, &leaf_mask, &last);
+            let first = case.seed_agrees();
+            let leaf_mask = case.prune_agrees(&first);
+            let last = case.leaves_agree(&first, &leaf_mask);
             case.argmin_agrees(&last);
         }
     }
@@ -362,9 +223,9 @@ fn each_agrees_with_its_twin() {
 #[test]
 fn the_twins_together_find_the_nearest() {
     let case = Case::new(500, 9000, DEFAULT_TABLE_BYTES, 9);
-    let mut known = case.seed_twin();
-    let leaf_mask = case.prune_twin(&known);
-    case.leaves_twin(&mut known, &leaf_mask);
+    let known = case.seed_agrees();
+    let leaf_mask = case.prune_agrees(&known);
+    let known = case.leaves_agree(&known, &leaf_mask);
     for (at, query) in case.queries.iter().enumerate() {
         let each = case.packed.rows.iter();
         let of = |row: &[f32; ROW_STRIDE]| (squared(row, query), row[FEATURE_DIM] as u32);

@@ -2,11 +2,10 @@
 //! Bar, for `search_score_lanes`, `search_score_tiled` and their twin: g(28) = 28 u / (1 - 28 u) times the
 //! largest sum of absolute products, u = 2^-24 (Higham, section 3.1): what `search_exact` allows.
 
-use crate::checked::{self, Outcome};
-use crate::inputs::{Draw, POISON, close, gpu};
-use bytemuck::cast_slice;
-use footwork::gpu::shader::Shader;
-use footwork::gpu::{Buffer, shader};
+use crate::inputs::{Draw, close};
+use crate::support::forms::Forms;
+use footwork::gpu::shader::search_score_lanes::constants::{LANES, QUERIES};
+use footwork::gpu::shader::search_score_tiled::constants::TILE;
 use footwork::kernels::search::{search_score_lanes, search_score_tiled};
 use footwork::motion::features::ROW_STRIDE;
 
@@ -74,15 +73,6 @@ impl Case {
         }
     }
 
-    fn scores(&self) -> usize {
-        self.rows.len().div_ceil(self.block) * self.queries.len()
-    }
-
-    /// Some scores too many: they must stay untouched.
-    fn poison(&self) -> Vec<f32> {
-        vec![POISON; self.scores() + 9]
-    }
-
     /// Best score and largest sum of absolute products of every block and query.
     fn oracle(&self) -> Vec<(f64, f64)> {
         let products = |row: &[f32; ROW_STRIDE], query: &[f32; ROW_STRIDE]| {
@@ -106,66 +96,39 @@ impl Case {
             .collect()
     }
 
-    fn close(&self, form: &str, got: &[f32]) {
+    fn close(&self, forms: Forms<Vec<f32>>) {
         let oracle = self.oracle();
         let want: Vec<f32> = oracle.iter().map(|o| o.0 as f32).collect();
         let unit = f64::from(f32::EPSILON) / 2.0;
         // One more rounding: the oracle's, to be compared as f32.
         let g = 29.0 * unit / (1.0 - 29.0 * unit);
-        close(form, &got[..self.scores()], &want, |i| {
-            (g * oracle[i].1) as f32
-        });
-        assert!(got[self.scores()..].iter().all(|&s| s == POISON), "{form}");
-    }
-
-    pub fn twin_agrees(&self) {
-        let mut score = self.poison();
-        search_score_lanes::twin(&self.rows, &self.queries, &mut score, &self.params());
-        self.close("twin", &score);
-        let mut tiled = self.poison();
-        search_score_tiled::twin(&self.rows, &self.queries, &mut tiled, &self.tile_params());
-        assert_eq!(score, tiled);
-    }
-
-    /// Runs one of the two forms both ways.
-    pub fn shader_agrees(&self, tile: bool) {
-        let gpu = gpu();
-        let rows = Buffer::from_slice(&gpu, self.rows.as_flattened());
-        let queries = Buffer::from_slice(&gpu, self.queries.as_flattened());
-        let score = Buffer::from_slice(&gpu, &self.poison());
-        if tile {
-            search_score_tiled::launch(&gpu, &rows, &queries, &score, &self.tile_params());
-        } else {
-            search_score_lanes::launch(&gpu, &rows, &queries, &score, &self.params());
+        for (form, got) in forms.all() {
+            close(form, got, &want, |i| (g * oracle[i].1) as f32);
         }
-        self.close("launched", &score.read(&gpu).expect("scores"));
-        let checked = if tile {
-            self.checked(
-                &shader::SEARCH_SCORE_TILED,
-                shader::search_score_tiled::constants::TILE,
-            )
-        } else {
-            use shader::search_score_lanes::constants::{LANES, QUERIES};
-            self.checked(&shader::SEARCH_SCORE_LANES, LANES * QUERIES)
-        };
-        self.close("checked", &checked.of(2));
     }
 
-    fn checked(&self, shader: &'static Shader, queries: u32) -> Outcome {
-        let poison = self.poison();
-        let buffers: [&[u8]; 3] = [
-            cast_slice(&self.rows),
-            cast_slice(&self.queries),
-            cast_slice(&poison),
-        ];
-        let params = self.params();
-        let blocks = params.candidates.div_ceil(params.block);
-        let groups = [
-            params.count.div_ceil(queries),
-            blocks.div_ceil(params.run),
-            1,
-        ];
-        checked::run(shader, groups, &buffers, &params)
+    /// Workgroups, of so many queries each, and scores.
+    fn sizes(&self, queries: u32) -> ([u32; 3], usize) {
+        let blocks = self.rows.len().div_ceil(self.block);
+        let runs = blocks.div_ceil(self.run) as u32;
+        let groups = (self.queries.len() as u32).div_ceil(queries);
+        ([groups, runs, 1], blocks * self.queries.len())
+    }
+
+    pub fn lanes_agree(&self) {
+        let (groups, scores) = self.sizes(LANES * QUERIES);
+        self.close(forms!(
+            search_score_lanes, SEARCH_SCORE_LANES, groups, self.params();
+            self.rows, self.queries, out scores
+        ));
+    }
+
+    pub fn tiles_agree(&self) {
+        let (groups, scores) = self.sizes(TILE);
+        self.close(forms!(
+            search_score_tiled, SEARCH_SCORE_TILED, groups, self.tile_params();
+            self.rows, self.queries, out scores
+        ));
     }
 }
 
@@ -173,9 +136,7 @@ impl Case {
 fn agrees_with_its_twin_and_the_oracle() {
     for (seed, shape) in (0..).zip(SHAPES) {
         for far in [1.0, 1e4] {
-            let case = Case::new(shape, far, seed);
-            case.twin_agrees();
-            case.shader_agrees(false);
+            Case::new(shape, far, seed).lanes_agree();
         }
     }
 }
