@@ -4,8 +4,10 @@
 //! every step cores would wait for the slowest. On a GPU all environments are one part.
 
 use super::curriculum::Curriculum;
-use super::locomotion::live_view::{LiveView, States};
-use super::{EnvSpec, Stats, VecEnv};
+use super::live_view::{LiveView, States};
+use super::spec::EnvSpec;
+use super::stats::Stats;
+use super::vec_env::VecEnv;
 use crate::container::{Section, SectionError};
 use crate::gpu::{Array, Device};
 use anyhow::Result;

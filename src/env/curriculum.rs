@@ -1,6 +1,6 @@
 //! Levels of rising difficulty (Lee et al., section 4).
 
-use super::Stats;
+use super::stats::Stats;
 use serde::{Deserialize, Serialize};
 
 /// Least episodes a level is judged by.

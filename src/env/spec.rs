@@ -37,6 +37,10 @@ impl EnvSpec {
 
     /// The first row that the step `step` of a rollout writes final observations to.
     pub fn final_row(&self, step: usize) -> usize {
-        if self.bootstraps_often { step * self.rows() } else { 0 }
+        if self.bootstraps_often {
+            step * self.rows()
+        } else {
+            0
+        }
     }
 }

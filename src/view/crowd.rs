@@ -9,7 +9,7 @@ use crate::gpu::shader::{DRAW_CROWD, DRAW_CROWD_CUBOIDS};
 use crate::motion::database::Database;
 use crate::playback::PlacedFrame;
 use crate::env::locomotion::LocomotionTask;
-use crate::env::locomotion::live_view::{States, LiveView};
+use crate::env::live_view::{States, LiveView};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use rayon::prelude::*;

@@ -9,7 +9,7 @@ use crate::view::painter::Drawable;
 use crate::view::{Camera, Crowd, Scene};
 use crate::env::locomotion::LocomotionTask;
 use crate::env::EnvBatch;
-use crate::env::locomotion::live_view::LiveView;
+use crate::env::live_view::LiveView;
 use anyhow::Result;
 use eframe::egui::{self, Ui};
 use eframe::egui_wgpu::RenderState;

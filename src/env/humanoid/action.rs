@@ -28,5 +28,7 @@ pub fn rest_action(model: &Model) -> Vec<f32> {
     let scale = action_scale(model);
     let (offset, scale) = scale.split_at(targets.len());
     let pairs = targets.iter().zip(offset.iter().zip(scale));
-    pairs.map(|(target, (offset, scale))| (target - offset) / scale).collect()
+    pairs
+        .map(|(target, (offset, scale))| (target - offset) / scale)
+        .collect()
 }

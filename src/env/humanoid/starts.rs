@@ -87,6 +87,10 @@ pub fn lowest_point(model: &Model, bodies: &[usize], q: &[f32]) -> f32 {
     let mut axes = vec![Spatial::ZERO; model.nv()];
     kinematics(model, q, &mut poses, &mut axes);
     let own = |geom: &&Geom| geom.body.is_some_and(|body| bodies.contains(&body));
-    let heights = model.geoms.iter().filter(own).map(|geom| geom.lowest_point(&poses));
+    let heights = model
+        .geoms
+        .iter()
+        .filter(own)
+        .map(|geom| geom.lowest_point(&poses));
     heights.fold(f32::INFINITY, f32::min)
 }

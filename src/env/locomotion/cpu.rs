@@ -1,11 +1,13 @@
 //! Environments on the CPU: the twins, with the pruned search in place of the plain one.
 
+use super::config::{EnvConfig, STAT_NAMES};
+use super::env_state::EnvState;
 use super::env_state::gather;
 use super::kernel_params::KernelParams;
-use super::live_view::{LiveView, State, States};
-use super::{EnvConfig, EnvState, STAT_NAMES};
 use crate::container::{Section, SectionError};
-use crate::env::{EnvSpec, Transition, VecEnv};
+use crate::env::live_view::{LiveView, State, States};
+use crate::env::spec::EnvSpec;
+use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::Array;
 use crate::kernels::locomotion::locomotion_layout::{
     MAP_WORDS, VELOCITY_DIM, boxes, state_f32, state_u32,
@@ -89,7 +91,12 @@ impl CpuLocomotion {
         let obstacles = self.params.task.obstacles() > 0;
         if obstacles {
             let params = self.params.spawn_obstacles(all);
-            spawn_obstacles::twin(&self.termination, &mut self.boxes, &mut self.obstacle_velocity, &params);
+            spawn_obstacles::twin(
+                &self.termination,
+                &mut self.boxes,
+                &mut self.obstacle_velocity,
+                &params,
+            );
         }
         reset::twin(
             &self.matcher.database.candidates,
@@ -156,7 +163,8 @@ impl CpuLocomotion {
             &self.params.build_query(0),
         );
         let frames = &self.state_u32[state_u32::FRAME * self.params.envs..][..self.params.envs];
-        self.matcher.index
+        self.matcher
+            .index
             .nearest_all(frames, &self.queries, &mut self.matched);
         if obstacles {
             obstacle_collision::twin(
@@ -169,7 +177,11 @@ impl CpuLocomotion {
                 &mut self.state_u32,
                 &self.params.obstacle_collision(),
             );
-            move_obstacles::twin(&mut self.boxes, &mut self.obstacle_velocity, &self.params.move_obstacles());
+            move_obstacles::twin(
+                &mut self.boxes,
+                &mut self.obstacle_velocity,
+                &self.params.move_obstacles(),
+            );
         }
         advance_and_reward::twin(
             &self.matcher.database.candidates,
@@ -265,7 +277,12 @@ impl VecEnv for CpuLocomotion {
 
     fn stats(&mut self, out: &mut Array) {
         let params = self.params.episode_stats();
-        episode_stats::twin(&mut self.state_f32, &mut self.state_u32, out.host_mut(), &params);
+        episode_stats::twin(
+            &mut self.state_f32,
+            &mut self.state_u32,
+            out.host_mut(),
+            &params,
+        );
     }
 
     fn set_level(&mut self, level: u32) {

@@ -1,10 +1,12 @@
 //! Environments on a GPU: one launch after another on burn's own queue, nothing copied to the host.
 
+use super::config::{EnvConfig, STAT_NAMES};
+use super::env_state::EnvState;
 use super::kernel_params::KernelParams;
-use super::live_view::{Buffers, LiveView};
-use super::{EnvConfig, EnvState, STAT_NAMES};
 use crate::container::{Section, SectionError};
-use crate::env::{EnvSpec, Transition, VecEnv};
+use crate::env::live_view::{Buffers, LiveView};
+use crate::env::spec::EnvSpec;
+use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::{Array, Buffer, Gpu};
 use crate::kernels::locomotion::locomotion_layout::{
     MAP_WORDS, VELOCITY_DIM, boxes, state_f32, state_u32,

@@ -1,10 +1,13 @@
 //! The parameters of every kernel, for a task on a level at one moment of a run.
 
-use super::EnvConfig;
-use super::task::{LEVELS, Reward, SpeedDistribution, LocomotionTask};
+use super::config::EnvConfig;
+use super::task::{LEVELS, LocomotionTask, Reward, SpeedDistribution};
 use crate::kernels::locomotion::locomotion_layout::{BASE_OBS_DIM, CELLS, MAP_OBS_DIM};
+use crate::kernels::locomotion::{
+    advance_and_reward, build_query, episode_stats, hits, move_obstacles, observe,
+    obstacle_collision, rasterize_maps, reset, spawn_obstacles,
+};
 use crate::kernels::termination;
-use crate::kernels::locomotion::{obstacle_collision, hits, observe, build_query, reset, spawn_obstacles, rasterize_maps, advance_and_reward, episode_stats, move_obstacles};
 use crate::motion::RATE;
 use crate::motion::features::FRAMES_PER_STEP;
 
@@ -129,7 +132,11 @@ impl KernelParams {
     pub fn observe(&self, to: usize) -> observe::Params {
         observe::Params {
             envs: self.envs as u32,
-            rows: if self.task.has_maps() { CELLS as u32 } else { 1 },
+            rows: if self.task.has_maps() {
+                CELLS as u32
+            } else {
+                1
+            },
             width: self.observation_dim() as u32,
             offset: self.offset as u32,
             only: termination::ANY,

@@ -1,7 +1,7 @@
 //! What is asked of the character.
 
 use crate::env::curriculum::Curriculum;
-use crate::env::termination;
+use crate::kernels::termination;
 use serde::{Deserialize, Serialize};
 
 /// A task with its choices.

@@ -3,18 +3,20 @@
 use super::common::Common;
 use crate::container::{Section, SectionError};
 use crate::env::humanoid::batch::{CpuSimulatorBatch, SimulatedWorld, SimulatorBatch};
-use crate::env::{EnvSpec, Transition, VecEnv, termination};
+use crate::env::spec::EnvSpec;
+use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::Array;
 use crate::kernels::humanoid::action_targets::set_targets;
 use crate::kernels::humanoid::draw_starts::{self, start};
 use crate::kernels::humanoid::random_pushes::{self, push};
 use crate::kernels::humanoid::stand_reward::{self, Episode, FIELDS, LIMIT, STATS, SUMS};
 use crate::kernels::physics::proprioception;
+use crate::kernels::physics::smooth_dynamics;
 use crate::kernels::physics::solve_and_integrate::{
     read_warm_start, warm_start_dim, write_warm_start,
 };
-use crate::kernels::physics::smooth_dynamics;
 use crate::kernels::physics::strided::{gather, scatter};
+use crate::kernels::termination;
 use crate::physics::simulator::Simulator;
 use anyhow::Result;
 
@@ -151,14 +153,16 @@ impl VecEnv for CpuStand {
         let rows = actions.zip(&mut self.episodes).zip(rewards);
         let rows = rows.zip(terminations).zip(finals).zip(observations);
         let mut rows: Vec<Row> = rows
-            .map(|(((((action, episode), reward), termination), last), observation)| Row {
-                action,
-                episode,
-                reward,
-                termination,
-                final_observation: last,
-                observation,
-            })
+            .map(
+                |(((((action, episode), reward), termination), last), observation)| Row {
+                    action,
+                    episode,
+                    reward,
+                    termination,
+                    final_observation: last,
+                    observation,
+                },
+            )
             .collect();
         let common = &self.common;
         self.batch.each(&mut rows, |env, simulator, world, row| {
@@ -174,7 +178,11 @@ impl VecEnv for CpuStand {
     fn stats(&mut self, out: &mut Array) {
         let out = out.host_mut();
         for (index, sum) in out.iter_mut().enumerate() {
-            *sum = self.episodes.iter().map(|episode| episode[SUMS + index]).sum();
+            *sum = self
+                .episodes
+                .iter()
+                .map(|episode| episode[SUMS + index])
+                .sum();
         }
         for episode in &mut self.episodes {
             episode[SUMS..].fill(0.0);

@@ -3,9 +3,10 @@
 use super::common::Common;
 use super::cpu::CpuStand;
 use super::task::{DT, Stand};
-use crate::env::{Transition, VecEnv, termination};
+use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::Array;
 use crate::kernels::humanoid::stand_reward::{STEPS, UPRIGHTNESS};
+use crate::kernels::termination;
 use crate::physics::motion_clip::MotionClip;
 use crate::physics::simulator::{STEP_RATE, SUBSTEPS};
 use serde::Serialize;
@@ -35,7 +36,11 @@ fn opened(stand: &Stand, episodes: usize, seed: u32) -> CpuStand {
 }
 
 /// Steps environments one episode long, and shows each step to `after`, until that wants no more.
-fn play(envs: &mut CpuStand, policy: &MeanPolicy, mut after: impl FnMut(&CpuStand, &[u32]) -> bool) {
+fn play(
+    envs: &mut CpuStand,
+    policy: &MeanPolicy,
+    mut after: impl FnMut(&CpuStand, &[u32]) -> bool,
+) {
     let (count, dim) = (envs.spec().rows(), envs.spec().observation.dim());
     let mut observation = Array::Host(vec![0.0; count * dim]);
     let mut reward = Array::Host(vec![0.0; count]);

@@ -3,13 +3,15 @@
 use super::common::Common;
 use crate::container::{Section, SectionError};
 use crate::env::humanoid::batch::GpuSimulatorBatch;
-use crate::env::{EnvSpec, Transition, VecEnv, termination};
+use crate::env::spec::EnvSpec;
+use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::{Array, Buffer, Gpu};
 use crate::kernels::humanoid::stand_reward::{FIELDS, LIMIT, STATS, SUMS};
 use crate::kernels::humanoid::{
     action_targets, draw_starts, episode_sums, random_pushes, stand_reward,
 };
 use crate::kernels::physics::proprioception;
+use crate::kernels::termination;
 use anyhow::Result;
 
 pub struct GpuStand {

@@ -9,7 +9,7 @@ pub mod evaluate;
 mod gpu;
 mod task;
 
-use crate::env::VecEnv;
+use crate::env::vec_env::VecEnv;
 use crate::gpu::Device;
 use anyhow::Result;
 use common::Common;

@@ -1,8 +1,9 @@
 //! The choices of the task, and its dimensions.
 
 use crate::env::humanoid::starts::StartSpread;
-use crate::env::{EnvSpec, ObservationSpec, termination};
+use crate::env::spec::{EnvSpec, ObservationSpec};
 use crate::kernels::physics::proprioception;
+use crate::kernels::termination;
 use crate::physics::scenes;
 use crate::physics::simulator::{STEP_RATE, SUBSTEPS};
 use serde::{Deserialize, Serialize};
@@ -95,7 +96,9 @@ impl Stand {
         let fits = |value: f32| (0.0..=1000.0).contains(&value);
         match rest.iter().find(|(_, value)| !fits(*value)) {
             Some((name, _)) => Err(format!("{name} must lie between 0 and 1000")),
-            None if self.min_push > self.max_push => Err("min_push must not exceed max_push".into()),
+            None if self.min_push > self.max_push => {
+                Err("min_push must not exceed max_push".into())
+            }
             None => Ok(()),
         }
     }
@@ -127,4 +130,3 @@ pub fn spec(envs: usize) -> EnvSpec {
         bootstraps_often: false,
     }
 }
-

@@ -1,0 +1,65 @@
+//! What a learner sees of environments, whatever the task and the device.
+
+use super::live_view::LiveView;
+use super::spec::EnvSpec;
+use crate::container::{Section, SectionError};
+use crate::gpu::Array;
+use anyhow::Result;
+
+/// The columns of a rollout that a step fills.
+pub struct Transition<'a> {
+    /// Which step of the rollout this is, from 0.
+    pub step: usize,
+    /// `[steps][rows]`
+    pub reward: &'a mut Array,
+    /// `[steps][rows]`, see [`crate::kernels::termination`].
+    pub termination: &'a mut Array<u32>,
+    /// `[final_steps][rows][observation]`: the last observation of the episodes that this step ended
+    /// and whose value goes on. The rows of others are left as they are.
+    pub final_observation: &'a mut Array,
+}
+
+/// Environments that are stepped together, with same-step reset (Gymnasium's `SAME_STEP`): a step that
+/// ends an episode begins the next one, and the next observation is of that.
+pub trait VecEnv: Send {
+    fn spec(&self) -> &EnvSpec;
+
+    /// Writes the observations `[rows][observation]` of this moment to `out` from the index `at` on.
+    fn observe(&mut self, out: &mut Array, at: usize);
+
+    /// Plays one step of all environments. `action` holds `[rows][action]` from the index `at` on.
+    fn step(&mut self, action: &Array, at: usize, out: Transition);
+
+    /// Names of the sums that [`VecEnv::stats`] writes: `episodes`, `successes`, `steps` and `returns`
+    /// of the episodes that ended, and the environment's own, by the names that their means have in
+    /// `metrics.jsonl`.
+    fn stat_names(&self) -> &'static [&'static str];
+
+    /// Writes the sums over all episodes that ended since the last call to `out`, in the order of
+    /// [`VecEnv::stat_names`].
+    fn stats(&mut self, out: &mut Array);
+
+    /// Episodes that begin from now on are of this level of a [curriculum](super::curriculum).
+    fn set_level(&mut self, _level: u32) {}
+
+    /// What there is to see while the batch goes on, if there is a view of it.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn live_view(&mut self) -> Result<Option<LiveView>> {
+        Ok(None)
+    }
+
+    /// Writes everything that the environments need to go on as if they had never stopped. Only
+    /// between rollouts.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn save(&self, to: &mut Section) -> Result<()>;
+
+    /// Puts a saved state back.
+    ///
+    /// # Errors
+    /// It is not of such environments.
+    fn load(&mut self, from: &mut Section) -> Result<(), SectionError>;
+}
