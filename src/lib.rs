@@ -1,49 +1,90 @@
 //! Footwork trains character controllers: motion capture in, a policy that steers a full-body
 //! character out, by motion matching and PPO (Lee, Kwon, Shin and Lee, "Utilizing Motion Matching
-//! with Deep Reinforcement Learning for Target Location Tasks").
+//! with Deep Reinforcement Learning for Target Location Tasks"); and simulated bodies that learn to
+//! move, on articulated-body physics of its own.
 //!
-//! # A step
+//! # A step of motion matching
 //!
-//! Every 0.2 seconds the policy sees the pose feature of the frame its character shows and the
-//! target in the character's frame. It answers with half a question: where the character should be,
-//! and face, in a third, two thirds and a whole second. The pose feature is the other half. The
-//! search finds the database frame nearest to the whole question; the six frames that follow it are
-//! played; the character stands where they have taken it, and is rewarded for being near its target.
-//! Nothing of this touches a joint: the world of the policy is a frame number, a place on the ground
-//! and a direction. Thousands of such worlds step side by side, in shaders on a GPU or in the
-//! shaders' twins on a CPU, and after a few steps PPO learns from all of them at once, on the same
-//! device.
+//! Every 0.2 seconds the policy observes the pose feature of the frame that its character shows and
+//! the target in the character frame. Its action is half a query: where the character should be, and
+//! face, in a third, two thirds and a whole second. The pose feature is the other half. The search
+//! finds the database frame nearest to the whole query; the six frames that follow it are played, and
+//! the reward is for being near the target. No joint takes part in this: the state of an environment
+//! is a frame number, a position on the ground and a heading. Thousands of environments step side by
+//! side, in shaders on a GPU or in the shaders' twins on a CPU, and after a few steps PPO learns from
+//! all of them at once, on the same device.
+//!
+//! ```
+//! # #[cfg(feature = "train")] {
+//! use footwork::env::locomotion::{EnvConfig, LocomotionTask, Plane};
+//! use footwork::gpu::Device;
+//! use footwork::matching::MotionMatcher;
+//! use footwork::motion::{database::Database, normalise::Weights, synthetic};
+//! use footwork::rl::{Algorithm, ppo::PpoLearner};
+//! use footwork::train::{config::Preset, tasks};
+//! use std::sync::Arc;
+//!
+//! let (clips, roles) = synthetic::perform(1, 1.0);
+//! let database = Database::build(&clips, roles, Weights::PAPER)?;
+//! let matcher = Arc::new(MotionMatcher::new(Arc::new(database)));
+//!
+//! let ppo = tasks::find("plane")?.config(Preset::Fast).ppo;
+//! let task = LocomotionTask::Plane(Plane::default());
+//! let config = EnvConfig { task, envs: ppo.envs, seed: 1, level: 0 };
+//! let mut envs = config.open(&Device::Cpu, &matcher)?;
+//! let mut learner = PpoLearner::new(&ppo, &envs.spec(), &Device::Cpu, 1)?;
+//! for update in 0..3 {
+//!     let iteration = learner.iterate(&mut envs, update * ppo.batch() as u64)?;
+//!     println!("{:?}", iteration.stats.mean("returns"));
+//! }
+//! let policy = learner.policy()?;
+//! assert_eq!(policy.mean(&[0.0; 17]).len(), 12);
+//! # }
+//! # Ok::<(), anyhow::Error>(())
+//! ```
 //!
 //! # The modules, from the ground up
 //!
+//! - [`gpu`]: devices, arrays, the one launch, the one bridge to burn's tensors;
 //! - [`motion`]: recordings, the synthetic performer, features, the database;
-//! - [`gpu`]: devices, buffers, the one launch, the one bridge to burn's tensors;
+//! - [`physics`]: articulated rigid bodies with contact, one world at a time;
 //! - [`kernels`]: one file per shader: parameters, launch, twin;
-//! - [`matching`]: motion matching: the exact search, its index, on the CPU and on the GPU;
-//! - [`physics`]: articulated rigid bodies with contact;
-//! - [`nn`]: networks, their evaluation and their gradients;
-//! - [`env`]: batches of environments, by shaders or by their twins;
-//! - [`rl`]: rollouts, advantages, PPO;
-//! - [`train`]: configuration, run directory, checkpoints, the loop, evaluation;
+//! - [`matching`]: motion matching: the exact search and its index, on the CPU and on the GPU;
 //! - [`playback`]: the whole body of an episode: stitching, foot locking, motion quality;
-//! - [`view`]: scenes, and the renderer that draws them;
-//! - [`viewer`]: the interactive windows;
-//! - [`bench`]: what each device makes of each stage;
-//! - [`report`]: pictures, TensorBoard events, tables;
+//! - `nn`: networks, their evaluation and their gradients (feature `train`);
+//! - `env`: batches of environments behind one trait: motion matching, simulated bodies (`train`);
+//! - `rl`: rollouts, advantages, PPO (`train`);
+//! - `train`: tasks by name, configuration, run directory, checkpoints, evaluation (`train`);
+//! - `view`, `viewer`: scenes and the renderer that draws them; windows (`viewer`);
+//! - `bench`: what each device makes of each stage (`report` and `train`);
+//! - [`report`]: tables; pictures and TensorBoard events (feature `report`);
 //! - [`container`]: the file format of databases and checkpoints.
+//!
+//! # Features
+//!
+//! All of `cli`, `gpu`, `report`, `train` and `viewer` are on by default. Without any of them the crate
+//! is motion matching and physics on the CPU, without burn, wgpu or a command line. `train,cli` trains on
+//! the CPU. No real GPU has been measured yet: the shaders are tested on Mesa's lavapipe.
 
+#[cfg(all(feature = "report", feature = "train"))]
 pub mod bench;
 pub mod container;
+#[cfg(feature = "train")]
 pub mod env;
 pub mod gpu;
 pub mod kernels;
 pub mod matching;
 pub mod motion;
+#[cfg(feature = "train")]
 pub mod nn;
 pub mod physics;
 pub mod playback;
 pub mod report;
+#[cfg(feature = "train")]
 pub mod rl;
+#[cfg(feature = "train")]
 pub mod train;
+#[cfg(feature = "viewer")]
 pub mod view;
+#[cfg(feature = "viewer")]
 pub mod viewer;

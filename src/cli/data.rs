@@ -9,7 +9,6 @@ use footwork::motion::features::MIN_FUTURE_FRAMES;
 use footwork::motion::import::ImportOptions;
 use footwork::motion::normalise::Weights;
 use footwork::motion::{RATE, bvh, synthetic};
-use footwork::report::coverage::{self, Samples};
 use footwork::report::table::table;
 use footwork::train::data;
 use std::path::{Path, PathBuf};
@@ -85,6 +84,7 @@ pub struct Info {
     /// A database file, a BVH file or a folder of them [default: the synthetic motion]
     path: Option<PathBuf>,
     /// Also draw speed against turning, and the directions of movement
+    #[cfg(feature = "report")]
     #[arg(long, value_name = "PNG")]
     plot: Option<PathBuf>,
 }
@@ -174,28 +174,37 @@ impl Info {
         );
         let motion = database.ground_motion();
         print!("{}", coverage_table(&motion));
+        #[cfg(feature = "report")]
         if let Some(plot) = &self.plot {
-            let speed: Vec<f32> = motion
-                .iter()
-                .map(|(velocity, _)| velocity[0].hypot(velocity[1]))
-                .collect();
-            let turning: Vec<f32> = motion.iter().map(|&(_, turning)| turning).collect();
-            // Seen from above, right is positive; the character frame's x is left.
-            let velocity: Vec<[f32; 2]> = motion
-                .iter()
-                .map(|(velocity, _)| [-velocity[0], velocity[1]])
-                .collect();
-            let samples = Samples {
-                rate_hz: RATE,
-                speed: &speed,
-                turning: &turning,
-                velocity: &velocity,
-            };
-            coverage::draw(plot, &samples)?;
+            draw_coverage(plot, &motion)?;
             println!("\ncoverage drawn in {}", plot.display());
         }
         Ok(())
     }
+}
+
+/// Draws the velocities and turning rates of a motion.
+#[cfg(feature = "report")]
+fn draw_coverage(plot: &std::path::Path, motion: &[([f32; 2], f32)]) -> Result<()> {
+    use footwork::report::coverage::{Samples, draw};
+
+    let speed: Vec<f32> = motion
+        .iter()
+        .map(|(velocity, _)| velocity[0].hypot(velocity[1]))
+        .collect();
+    let turning: Vec<f32> = motion.iter().map(|&(_, turning)| turning).collect();
+    // Seen from above, right is positive; the character frame's x is left.
+    let velocity: Vec<[f32; 2]> = motion
+        .iter()
+        .map(|(velocity, _)| [-velocity[0], velocity[1]])
+        .collect();
+    let samples = Samples {
+        rate_hz: RATE,
+        speed: &speed,
+        turning: &turning,
+        velocity: &velocity,
+    };
+    Ok(draw(plot, &samples)?)
 }
 
 fn clips(database: &Database) -> String {

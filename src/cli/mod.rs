@@ -1,6 +1,7 @@
 //! One file a subcommand.
 
 mod ablate;
+#[cfg(feature = "report")]
 mod bench;
 mod data;
 mod eval;
@@ -48,6 +49,7 @@ enum Command {
     /// Let simulated bodies move by random actions: throughput and statistics
     Sim(sim::Sim),
     /// Measure what each device makes of each stage
+    #[cfg(feature = "report")]
     Bench(bench::Bench),
     /// Import, synthesise and inspect motion
     #[command(subcommand)]
@@ -64,6 +66,7 @@ pub fn run() -> Result<()> {
         #[cfg(feature = "viewer")]
         Command::Render(render) => render.run(),
         Command::Sim(sim) => sim.run(),
+        #[cfg(feature = "report")]
         Command::Bench(bench) => bench.run(),
         Command::Data(data) => data.run(),
     }
