@@ -10,7 +10,7 @@ use footwork::playback::player::{Feet, Style};
 use footwork::playback::quality::compare;
 use footwork::playback::stitch::Stitching;
 use footwork::playback::two_bone_ik::solve;
-use footwork::playback::{Player, CharacterPose, PlacedFrame};
+use footwork::playback::{CharacterPose, PlacedFrame, Player};
 use footwork::train::controller::Scripted;
 use footwork::train::rendered_frames::rendered_frames;
 use glam::{Quat, Vec3};
@@ -68,11 +68,7 @@ fn walking_on_is_the_recording_moved_as_a_whole() {
 
 #[test]
 fn a_recording_without_jumps_is_shown_as_it_is() {
-    for stitching in [
-        Stitching::None,
-        Stitching::Linear,
-        Stitching::Inertialize,
-    ] {
+    for stitching in [Stitching::None, Stitching::Linear, Stitching::Inertialize] {
         let style = Style {
             stitching,
             foot_locking: false,

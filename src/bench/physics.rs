@@ -4,9 +4,7 @@ use super::clock::{MAX_CALL_S, seconds};
 use super::recorder::{Recorder, Workload};
 use super::roofline::ItemCost;
 use super::stage::BenchContext;
-use crate::env::humanoid::batch::{
-    self, GpuSimulatorBatch, SimulatorBatch, SimulatorBatchConfig,
-};
+use crate::env::humanoid::batch::{self, GpuSimulatorBatch, SimulatorBatch, SimulatorBatchConfig};
 use crate::gpu::Device;
 use crate::physics::scenes;
 use crate::physics::simulator::SolverOptions;
@@ -52,7 +50,11 @@ pub fn measure(context: &BenchContext, record: &mut Recorder) -> Result<()> {
 }
 
 /// Measures whole actions and returns the seconds of one.
-fn actions(context: &BenchContext, setup: &SimulatorBatchConfig, record: &mut Recorder) -> Result<f64> {
+fn actions(
+    context: &BenchContext,
+    setup: &SimulatorBatchConfig,
+    record: &mut Recorder,
+) -> Result<f64> {
     let BenchContext { on, roofline, .. } = *context;
     (record.tell)(&format!("{}: {} humanoids", on.name(), setup.envs));
     let time = on.install(|| -> Result<f64> {

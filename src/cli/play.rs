@@ -3,15 +3,15 @@
 use super::run::Run;
 use anyhow::Result;
 use clap::Args;
+use footwork::env::locomotion::{LocomotionTask, Plane};
 use footwork::gpu::Gpu;
 use footwork::motion::normalise::Weights;
-use footwork::viewer::app::PolicyEntry;
-use footwork::viewer::window;
 use footwork::playback::player::Style;
 use footwork::train::controller::Controller;
 use footwork::train::data;
 use footwork::view::playthrough::PlaythroughContext;
-use footwork::env::locomotion::{LocomotionTask, Plane};
+use footwork::viewer::app::PolicyEntry;
+use footwork::viewer::window;
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -5,11 +5,11 @@ use super::run::Run;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use footwork::gpu::Gpu;
+use footwork::nn::Policy;
 use footwork::playback::player::Style;
 use footwork::playback::stitch::Stitching;
-use footwork::nn::Policy;
-use footwork::view::image_files::{self, Output};
 use footwork::view::debug_draw::scene;
+use footwork::view::image_files::{self, Output};
 use footwork::view::playthrough::{Playthrough, PlaythroughContext};
 use footwork::view::strip::film_strip;
 use footwork::view::{Camera, RenderTarget, Renderer};
@@ -176,7 +176,11 @@ impl Render {
                     .with_context(|| format!("cannot make the folder {}", path.display()))?;
                 image_files::clear(path)?;
                 for number in (0..count).progress() {
-                    image_files::png(&image_files::frame(path, number), self.size, &film.picture()?)?;
+                    image_files::png(
+                        &image_files::frame(path, number),
+                        self.size,
+                        &film.picture()?,
+                    )?;
                     film.skip(between)?;
                 }
             }

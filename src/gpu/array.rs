@@ -10,7 +10,9 @@ use std::ops::Range;
 /// asking for the other form is a mistake in the program and panics.
 #[derive(Clone)]
 pub enum Array<T = f32> {
+    /// Host memory, for the CPU.
     Host(Vec<T>),
+    /// A storage buffer of a GPU.
     Gpu(Buffer<T>),
 }
 

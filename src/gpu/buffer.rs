@@ -26,6 +26,7 @@ pub struct Shared {
 }
 
 impl Shared {
+    /// The binding for a bind group.
     pub fn binding(&self) -> wgpu::BindingResource<'_> {
         wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer: &self.buffer,
@@ -37,6 +38,7 @@ impl Shared {
 
 /// Any buffer, as a kernel's argument.
 pub trait Argument {
+    /// The memory, for the runtime.
     fn handle(&self) -> Handle;
 }
 
@@ -87,10 +89,12 @@ impl<T: Pod> Buffer<T> {
         })
     }
 
+    /// Number of elements.
     pub fn len(&self) -> usize {
         self.len
     }
 
+    /// Whether there are no elements.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }

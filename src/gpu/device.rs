@@ -23,7 +23,9 @@ pub enum Choice {
 /// An opened device.
 #[derive(Clone)]
 pub enum Device {
+    /// The CPU, all cores.
     Cpu,
+    /// A graphics adapter, real or software.
     Gpu(Box<Gpu>),
 }
 

@@ -2,9 +2,7 @@
 
 /// No adapter of the requested kind.
 #[derive(Debug, thiserror::Error)]
-#[error(
-    "no {wanted} found: {remedy}{instead}"
-)]
+#[error("no {wanted} found: {remedy}{instead}")]
 pub struct NoAdapter {
     pub(super) wanted: &'static str,
     /// What would bring one.

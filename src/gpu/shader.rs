@@ -7,6 +7,7 @@ pub struct Shader {
     pub name: &'static str,
     /// WGSL, imports included.
     pub source: &'static str,
+    /// Invocations of a workgroup along x, y and z.
     pub workgroup: [u32; 3],
     /// Storage buffers: bindings `0..buffers` of group 0. The uniform, if any, follows them.
     pub buffers: u32,
@@ -22,20 +23,26 @@ pub fn groups(shader: &Shader, items: usize) -> [u32; 3] {
 /// Type of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParamKind {
+    /// `u32`
     U32,
+    /// `i32`
     I32,
+    /// `f32`
     F32,
 }
 
 /// Place and type of one parameter in the uniform.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
+    /// Offset in the uniform, bytes.
     pub offset: usize,
+    /// Type of the number.
     pub kind: ParamKind,
 }
 
 /// A Rust type that may stand in a parameter struct.
 pub trait Scalar {
+    /// The type in WGSL.
     const KIND: ParamKind;
 }
 
@@ -59,6 +66,7 @@ pub const fn same_kind(a: ParamKind, b: ParamKind) -> bool {
 #[macro_export]
 macro_rules! shader_params {
     ($(#[$meta:meta])* pub struct $name:ident for $shader:ident { $($(#[$doc:meta])* pub $field:ident: $kind:ty,)* }) => {
+        #[doc = concat!("Parameters of the shader `", stringify!($shader), "`.\n\n")]
         $(#[$meta])*
         #[repr(C)]
         #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]

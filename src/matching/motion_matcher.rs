@@ -10,6 +10,7 @@ use std::sync::Arc;
 /// both.
 #[derive(Clone, Debug)]
 pub struct MotionMatcher {
+    /// The motion.
     pub database: Arc<Database>,
     /// The index of [`Database::candidates`].
     pub index: Arc<Index>,

@@ -21,7 +21,9 @@ const SEEDS: usize = 3;
 /// The nearest row and its squared distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
+    /// Index of the row among the candidates.
     pub index: u32,
+    /// Squared distance, normalised.
     pub distance: f32,
 }
 

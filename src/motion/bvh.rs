@@ -27,6 +27,7 @@ pub struct Recording {
 }
 
 impl Recording {
+    /// Number of frames.
     pub fn frames(&self) -> usize {
         self.positions.len()
     }

@@ -6,6 +6,7 @@ use glam::{Quat, Vec3};
 /// A recording at a fixed rate: root positions and local joint rotations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
+    /// Name, that of its file.
     pub name: String,
     /// Each clip brings its own bone lengths: subjects of one capture differ.
     pub skeleton: Skeleton,
@@ -17,6 +18,7 @@ pub struct Clip {
     pub rotations: Vec<Quat>,
     /// Where it comes from and under which terms; empty if unknown.
     pub source: String,
+    /// Terms of use; empty if unknown.
     pub licence: String,
 }
 

@@ -14,10 +14,15 @@ use std::path::Path;
 /// The frames of a clip in the database.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClipRecord {
+    /// Name of the clip.
     pub name: String,
+    /// Its first frame in the database.
     pub first: usize,
+    /// Number of its frames.
     pub frames: usize,
+    /// Where it comes from; empty if unknown.
     pub source: String,
+    /// Terms of use; empty if unknown.
     pub licence: String,
 }
 
@@ -38,9 +43,13 @@ pub struct RootMotion {
 pub struct Database {
     /// Bone lengths of the first clip; every clip has the same joints.
     pub skeleton: Skeleton,
+    /// Joints of the feature.
     pub roles: Roles,
+    /// Clips in the order of their frames.
     pub clips: Vec<ClipRecord>,
+    /// Weights of the features.
     pub weights: Weights,
+    /// Mean and scale of the features.
     pub normalisation: Normalisation,
     /// Normalised features, `[frame][ROW_STRIDE]`, padded with zeros.
     pub features: Vec<[f32; ROW_STRIDE]>,

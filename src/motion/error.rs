@@ -3,9 +3,11 @@
 use crate::container::StoreError;
 use std::path::{Path, PathBuf};
 
+/// A result of reading or importing motion.
 pub type MotionResult<T> = Result<T, MotionError>;
 
 /// Each message says what is wrong, where, and what to do about it.
+#[allow(missing_docs, reason = "the messages say what variants and fields are")]
 #[derive(Debug, thiserror::Error)]
 pub enum MotionError {
     #[error("cannot read {}: {error}; check that it exists and may be read", .path.display())]

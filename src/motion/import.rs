@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 /// window around them. Shorter clips are left out.
 pub const MIN_FRAMES: usize = 61;
 
+/// Choices of an import.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
     /// Metres per file unit, instead of what the manifest says or the skeleton shows.
@@ -31,6 +32,7 @@ pub struct ImportOptions {
 pub struct ImportedMotion {
     /// In the order of the file names.
     pub clips: Vec<Clip>,
+    /// Joints of the feature, by number.
     pub roles: Roles,
     /// One sentence each: clips left out, T-poses dropped without a manifest, unusual units.
     pub notes: Vec<String>,

@@ -9,10 +9,13 @@ use std::path::Path;
 pub struct Entry {
     /// Frames of the file to drop at its head and tail.
     pub skip_head: usize,
+    /// Frames to leave out at the end.
     pub skip_tail: usize,
     /// Metres per file unit.
     pub unit_m: Option<f32>,
+    /// Terms of use.
     pub licence: String,
+    /// Where the recording comes from.
     pub source: String,
 }
 

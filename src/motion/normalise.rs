@@ -7,10 +7,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Weights {
+    /// Positions of both feet.
     pub foot_position: f32,
+    /// Velocities of both feet.
     pub foot_velocity: f32,
+    /// Velocity of the root.
     pub root_velocity: f32,
+    /// Future positions.
     pub trajectory_position: f32,
+    /// Future directions.
     pub trajectory_direction: f32,
 }
 
@@ -45,7 +50,9 @@ impl Weights {
 /// `normalised = (feature - mean) * scale`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Normalisation {
+    /// Mean of each dimension.
     pub mean: [f32; FEATURE_DIM],
+    /// Weight over standard deviation, one for a group of dimensions.
     pub scale: [f32; FEATURE_DIM],
 }
 
@@ -94,6 +101,7 @@ impl Normalisation {
         [&self.mean[POSE_DIM..], &self.scale[POSE_DIM..]].concat()
     }
 
+    /// A row in the normalised space.
     pub fn apply(&self, row: &[f32; FEATURE_DIM]) -> [f32; FEATURE_DIM] {
         std::array::from_fn(|i| (row[i] - self.mean[i]) * self.scale[i])
     }

@@ -7,17 +7,23 @@ use std::path::Path;
 /// Joint indices of the parts that features, playback and mirroring need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Roles {
+    /// The root.
     pub hips: usize,
     /// Tops of the thighs.
     pub left_hip: usize,
+    /// Right hip joint.
     pub right_hip: usize,
     /// Ankles.
     pub left_foot: usize,
+    /// Right ankle.
     pub right_foot: usize,
+    /// Left toe joint.
     pub left_toe: usize,
+    /// Right toe joint.
     pub right_toe: usize,
     /// Tops of the upper arms.
     pub left_shoulder: usize,
+    /// Right shoulder joint.
     pub right_shoulder: usize,
 }
 

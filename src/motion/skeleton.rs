@@ -10,15 +10,18 @@ use serde::{Deserialize, Serialize};
 /// [`Clip`](super::clip::Clip) gives the root's position for every frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Skeleton {
+    /// Names of the joints.
     pub names: Vec<String>,
     /// `None` for joint 0 only.
     pub parents: Vec<Option<usize>>,
+    /// Position of each joint relative to its parent, m.
     pub offsets: Vec<Vec3>,
     /// Tips of the leaf bones (BVH "End Site"): the joint they hang on and their offset in metres.
     pub ends: Vec<(usize, Vec3)>,
 }
 
 impl Skeleton {
+    /// Number of joints.
     pub fn joints(&self) -> usize {
         self.names.len()
     }

@@ -16,7 +16,9 @@ const AROUND: usize = 2;
 /// The part of a foot that bears weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FootContact {
+    /// Not on the ground.
     Air,
+    /// The heel alone.
     Heel,
     /// The ball, with or without the heel.
     Toe,
@@ -25,7 +27,9 @@ pub enum FootContact {
 /// Heel and toe, the points of the sole, in the world, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolePoints {
+    /// The heel.
     pub heel: Vec3,
+    /// The toe joint.
     pub toe: Vec3,
 }
 

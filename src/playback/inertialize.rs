@@ -5,8 +5,11 @@ use glam::Vec3;
 /// An offset and its first two derivatives, per frame, at the moment it begins to decay.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct InertializedOffset {
+    /// The offset.
     pub value: Vec3,
+    /// Its first derivative, per frame.
     pub velocity: Vec3,
+    /// Its second derivative, per frame squared.
     pub acceleration: Vec3,
 }
 

@@ -8,10 +8,13 @@ use glam::{Quat, Vec3};
 /// Joints and geometry of a leg.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LegJoints {
+    /// The hip joint.
     pub hip: usize,
+    /// The knee joint.
     pub knee: usize,
     /// The ankle.
     pub foot: usize,
+    /// The toe joint.
     pub toe: usize,
     /// The knee's axis in the hip joint's frame, unit: the shank bends about it.
     pub axis: Vec3,

@@ -10,6 +10,7 @@ use glam::{Quat, Vec3};
 /// matching knows of a character.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedFrame {
+    /// Frame of the database.
     pub frame: usize,
     /// Ground point, `[x, z]`, m.
     pub at: [f32; 2],

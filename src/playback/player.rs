@@ -21,6 +21,7 @@ const RISE: f32 = 0.4;
 /// What all players of one database share.
 #[derive(Debug)]
 pub struct Feet {
+    /// Joints and geometry of both legs, left first.
     pub legs: [LegJoints; 2],
     /// Contacts of every frame, left foot first.
     pub contacts: Vec<[FootContact; 2]>,
@@ -44,7 +45,9 @@ impl Feet {
 /// How jumps and sliding feet are hidden.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Style {
+    /// How poses are blended where the frame jumps.
     pub stitching: Stitching,
+    /// Whether standing feet are held.
     pub foot_locking: bool,
 }
 

@@ -7,7 +7,9 @@ use glam::{Quat, Vec3};
 /// is relative to the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CharacterPose {
+    /// Position of the root, m.
     pub root: Vec3,
+    /// Rotation of every joint.
     pub rotations: Vec<Quat>,
 }
 

@@ -22,11 +22,13 @@ pub struct Quality {
     pub foot_skate_cm_s: f64,
     /// Depth of the lowest point of a sole below the ground, mean over all frames and most, cm.
     pub penetration_mean_cm: f64,
+    /// The greatest depth, cm.
     pub penetration_max_cm: f64,
     /// Distance of the worst joint of a pose to its position had it moved on steadily, cm.
     pub jump_cm: f64,
     /// Mean over all joints, at jumps, m/s^2 and m/s^3.
     pub acceleration: f64,
+    /// Jerk, m/s^3.
     pub jerk: f64,
 }
 
@@ -35,11 +37,17 @@ pub struct Quality {
 pub struct QualityComparison {
     /// Shown frames, and how many of them follow a jump.
     pub frames: usize,
+    /// Frames that follow a jump.
     pub jumps: usize,
+    /// The recordings between two jumps.
     pub recorded: Quality,
+    /// Frames as they are found.
     pub raw: Quality,
+    /// Blended linearly.
     pub simple: Quality,
+    /// Inertialized.
     pub stitched: Quality,
+    /// Inertialized, with feet locked.
     pub locked: Quality,
 }
 

@@ -34,6 +34,7 @@ pub struct Stitch {
 }
 
 impl Stitch {
+    /// No offset so far.
     pub fn new(kind: Stitching, joints: usize) -> Self {
         Stitch {
             kind,

@@ -82,16 +82,23 @@ impl Axis {
 /// A rectangle of the picture, in pixels.
 #[derive(Clone, Copy)]
 pub struct PlotArea {
+    /// Left edge, pixels.
     pub left: f64,
+    /// Upper edge, pixels.
     pub top: f64,
+    /// Right edge, pixels.
     pub right: f64,
+    /// Lower edge, pixels.
     pub bottom: f64,
 }
 
 /// A rectangle with two axes.
 pub struct Plot {
+    /// The area within the axes.
     pub frame: PlotArea,
+    /// The horizontal axis.
     pub x: Axis,
+    /// The vertical axis.
     pub y: Axis,
 }
 

@@ -12,6 +12,7 @@ use super::ReportError;
 /// One line of text as shapes: the origin lies at the left end, at half the height of
 /// a capital letter, with y downwards.
 pub struct Line {
+    /// Outlines of the glyphs.
     pub glyphs: Vec<OutlinedGlyph>,
     /// Pixels from the origin to where a next letter would start.
     pub width: f32,

@@ -14,7 +14,7 @@ mod maps;
 mod symbols;
 
 use episode::seconds;
-pub use episode::{CELLS, End, DrawnEpisode, Map, Obstacle};
+pub use episode::{CELLS, DrawnEpisode, End, Map, Obstacle};
 use symbols::{OBSTACLE, SEEN, WAY, draw_arrow, draw_rectangle, turned};
 
 /// Half of what a panel shows, in metres: the square in which obstacles begin, and as
@@ -44,7 +44,11 @@ const EPISODE: f64 = SIDE + BESIDE + maps::SIDE;
 /// # Errors
 ///
 /// If the picture cannot be drawn or written.
-pub fn draw(path: &std::path::Path, episodes: &[DrawnEpisode], step_s: f32) -> Result<(), ReportError> {
+pub fn draw(
+    path: &std::path::Path,
+    episodes: &[DrawnEpisode],
+    step_s: f32,
+) -> Result<(), ReportError> {
     let columns = episodes.len().clamp(1, COLUMNS);
     let rows = episodes.len().div_ceil(COLUMNS).max(1);
     let width = LEFT + columns as f64 * (EPISODE + GAP) - GAP + RIGHT;
@@ -180,7 +184,11 @@ impl Scene<'_> {
         Ok(())
     }
 
-    fn draw_target(&self, canvas: &mut Canvas<'_>, episode: &DrawnEpisode) -> Result<(), ReportError> {
+    fn draw_target(
+        &self,
+        canvas: &mut Canvas<'_>,
+        episode: &DrawnEpisode,
+    ) -> Result<(), ReportError> {
         let centre = self.place(episode.target);
         if !self.inside(centre) {
             return Ok(());
@@ -190,7 +198,11 @@ impl Scene<'_> {
     }
 
     /// The outline of the ground that the maps cover.
-    fn draw_covered(&self, canvas: &mut Canvas<'_>, episode: &DrawnEpisode) -> Result<(), ReportError> {
+    fn draw_covered(
+        &self,
+        canvas: &mut Canvas<'_>,
+        episode: &DrawnEpisode,
+    ) -> Result<(), ReportError> {
         let Some(&seen) = episode.points.get(episode.seen) else {
             return Ok(());
         };

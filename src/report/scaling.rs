@@ -8,10 +8,13 @@ use super::chart::{self, Axis, Plot, PlotArea};
 
 /// One plot.
 pub struct ScalingPanel {
+    /// Title of the panel.
     pub title: String,
     /// What grows, and what is measured, with its unit.
     pub x: &'static str,
+    /// Label of the vertical axis.
     pub y: &'static str,
+    /// Curves, a device each.
     pub curves: Vec<Curve>,
 }
 

@@ -28,6 +28,7 @@ pub struct Path {
 pub struct Group {
     /// What the panel shows, such as "20k steps".
     pub title: String,
+    /// The paths of its episodes.
     pub paths: Vec<Path>,
 }
 

@@ -39,6 +39,7 @@ impl Default for Camera {
 }
 
 impl Camera {
+    /// Position of the camera, m.
     pub fn eye(&self) -> Vec3 {
         let (up, out) = self.pitch.sin_cos();
         let (x, z) = self.yaw.sin_cos();
@@ -57,6 +58,7 @@ impl Camera {
         self.pitch = (self.pitch + pitch).clamp(PITCH[0], PITCH[1]);
     }
 
+    /// Multiplies the distance by a factor, within limits.
     pub fn zoom(&mut self, factor: f32) {
         self.distance = (self.distance * factor).clamp(DISTANCE[0], DISTANCE[1]);
     }

@@ -44,6 +44,7 @@ pub struct BoneRow {
 /// All capsules of a character.
 #[derive(Clone, Debug)]
 pub struct CapsuleRig {
+    /// The capsules.
     pub bones: Vec<Bone>,
 }
 

@@ -4,12 +4,12 @@ use super::capsule_rig::CapsuleRig;
 use super::meshes::{cube, sphere};
 use super::painter::{Drawable, Mesh, Pass, Pipelines, vertex_buffer};
 use super::renderer::Renderer;
+use crate::env::locomotion::LocomotionTask;
+use crate::env::live_view::{LiveView, States};
 use crate::gpu::Shared;
 use crate::gpu::shader::{DRAW_CROWD, DRAW_CROWD_CUBOIDS};
 use crate::motion::database::Database;
 use crate::playback::PlacedFrame;
-use crate::env::locomotion::LocomotionTask;
-use crate::env::live_view::{States, LiveView};
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -49,6 +49,7 @@ struct CrowdShape {
     instances: u32,
 }
 
+/// The environments of a training, ready to be drawn.
 pub struct Crowd {
     /// The characters with their targets; then the obstacles, if there are any.
     shapes: Vec<CrowdShape>,
@@ -139,7 +140,6 @@ impl Crowd {
             _live_view: live_view,
         }
     }
-
 }
 
 impl Drawable for Crowd {

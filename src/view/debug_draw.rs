@@ -1,14 +1,16 @@
 //! Scenes of a playthrough: the character, its target, obstacles and trajectories.
 
 use super::playthrough::{Playthrough, PlaythroughContext};
-use super::scene::{Cuboid, Colour, Scene};
+use super::scene::{Colour, Cuboid, Scene};
+use crate::env::locomotion::LocomotionTask;
 use crate::kernels::termination;
 use crate::playback::PlacedFrame;
-use crate::env::locomotion::LocomotionTask;
 use glam::Vec3;
 
 const TARGET: Colour = [0.06, 0.50, 0.22];
+/// Colour of the requested trajectory.
 pub const REQUESTED: Colour = [0.90, 0.36, 0.02];
+/// Colour of the matched trajectory.
 pub const MATCHED: Colour = [0.02, 0.34, 0.75];
 const OBSTACLE: Colour = [0.42, 0.34, 0.30];
 const HIT_OBSTACLE: Colour = [0.75, 0.05, 0.03];

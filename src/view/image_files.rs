@@ -1,15 +1,18 @@
 //! Pictures into files: one PNG, an animated GIF, or a folder of PNG frames.
 
-use crate::report::png_file;
 use crate::container::write_whole;
+use crate::report::png_file;
 use anyhow::{Context, Result};
 use std::path::{Path, PathBuf};
 
 /// Where pictures go; which kind, the name says.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Output {
+    /// One picture.
     Png(PathBuf),
+    /// An animation.
     Gif(PathBuf),
+    /// A folder of PNG frames.
     Folder(PathBuf),
 }
 
@@ -25,6 +28,7 @@ impl Output {
         }
     }
 
+    /// The file or folder.
     pub fn path(&self) -> &Path {
         match self {
             Output::Png(path) | Output::Gif(path) | Output::Folder(path) => path,

@@ -48,7 +48,9 @@ pub struct Pipelines {
 
 /// Layouts of the bind groups: those of a pass, and a shape's own.
 pub struct Layouts<'a> {
+    /// Group 0: the view.
     pub view: &'a wgpu::BindGroupLayout,
+    /// Group 1: the shadow map.
     pub shadows: &'a wgpu::BindGroupLayout,
     /// Group 2, if a shape has one.
     pub own: Option<&'a wgpu::BindGroupLayout>,

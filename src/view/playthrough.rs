@@ -1,29 +1,34 @@
 //! One character under a controller, frame by frame, for somebody to watch.
 
 use super::capsule_rig::CapsuleRig;
-use crate::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
+use crate::env::locomotion::cpu::CpuLocomotion;
+use crate::env::locomotion::{LEVELS, LocomotionTask};
 use crate::env::termination;
+use crate::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
 use crate::matching::MotionMatcher;
-use crate::motion::database::Database;
-use crate::motion::features::{TRAJECTORY_OFFSETS, FRAMES_PER_STEP, POSE_DIM, TRAJECTORY_DIM};
 use crate::motion::character_frame::to_world;
+use crate::motion::database::Database;
+use crate::motion::features::{FRAMES_PER_STEP, POSE_DIM, TRAJECTORY_DIM, TRAJECTORY_OFFSETS};
 use crate::playback::player::{Feet, Player, Style};
 use crate::playback::{CharacterPose, PlacedFrame};
 use crate::train::controller::Controller;
 use crate::train::evaluate::{advance, episodes, send_elsewhere};
 use crate::train::rendered_frames::standing;
-use crate::env::locomotion::cpu::CpuLocomotion;
-use crate::env::locomotion::{LEVELS, LocomotionTask};
 use anyhow::Result;
 use std::sync::Arc;
 
 /// What all playthroughs of a task share.
 #[derive(Clone)]
 pub struct PlaythroughContext {
+    /// The motion and its index.
     pub matcher: Arc<MotionMatcher>,
+    /// Legs and contacts of the motion.
     pub feet: Arc<Feet>,
+    /// The capsules that are drawn.
     pub rig: Arc<CapsuleRig>,
+    /// The task that is played.
     pub task: LocomotionTask,
+    /// How poses are joined.
     pub style: Style,
 }
 
@@ -78,7 +83,9 @@ pub struct Playthrough {
     pub step: Option<Step>,
     /// Frames of the step that are shown, of [`FRAMES_PER_STEP`].
     pub played: usize,
+    /// The shown frame and its position.
     pub shown: PlacedFrame,
+    /// The shown pose.
     pub pose: CharacterPose,
     player: Player,
 }
@@ -108,9 +115,17 @@ impl Playthrough {
     ///
     /// # Errors
     /// The controller's.
-    pub fn advance(&mut self, context: &PlaythroughContext, controller: &dyn Controller) -> Result<()> {
+    pub fn advance(
+        &mut self,
+        context: &PlaythroughContext,
+        controller: &dyn Controller,
+    ) -> Result<()> {
         if self.played == FRAMES_PER_STEP {
-            match self.step.as_ref().map_or(termination::RUNNING, |step| step.termination) {
+            match self
+                .step
+                .as_ref()
+                .map_or(termination::RUNNING, |step| step.termination)
+            {
                 termination::FAILED => {
                     *self = Playthrough::new(context, self.episode + 1);
                     return Ok(());
@@ -152,9 +167,7 @@ impl Playthrough {
 
     /// The obstacle maps that were observed before the running step.
     pub fn maps(&self) -> &[u32] {
-        self.step
-            .as_ref()
-            .map_or(&self.env.maps, |step| &step.maps)
+        self.step.as_ref().map_or(&self.env.maps, |step| &step.maps)
     }
 
     /// The target on the ground, m.
@@ -164,7 +177,10 @@ impl Playthrough {
 
     /// Puts the target elsewhere on the ground, m.
     pub fn set_target(&mut self, at: [f32; 2]) {
-        for (field, value) in [state_f32::TARGET_X, state_f32::TARGET_Z].into_iter().zip(at) {
+        for (field, value) in [state_f32::TARGET_X, state_f32::TARGET_Z]
+            .into_iter()
+            .zip(at)
+        {
             self.env.state_f32[field] = value;
         }
         // An arrival on the way would draw another.

@@ -4,8 +4,11 @@ use anyhow::{Context, Result};
 
 /// How pictures are stored: sRGB values, drawn on as linear ones.
 pub const STORED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Format of the colours that are drawn.
 pub const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Format of the depth buffer.
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Samples of a pixel.
 pub const SAMPLES: u32 = 4;
 
 /// A picture on the device.
@@ -19,6 +22,7 @@ pub struct RenderTarget {
 }
 
 impl RenderTarget {
+    /// A picture of so many pixels.
     pub fn new(device: &wgpu::Device, size: [u32; 2]) -> RenderTarget {
         let texture = |format, samples, usage, views: &[_]| {
             device.create_texture(&wgpu::TextureDescriptor {

@@ -1,12 +1,12 @@
 //! Draws a scene: once as the sun sees it, for the shadows, and once as the camera does.
 
 use super::camera::Camera;
-use super::render_target::{RenderTarget, DEPTH};
 use super::meshes::{cube, sphere};
 use super::painter::{Drawable, Layouts, Mesh, Painter, Pass, Pipelines, vertex_buffer};
-use super::scene::{Cuboid, Capsule, Scene};
+use super::render_target::{DEPTH, RenderTarget};
+use super::scene::{Capsule, Cuboid, Scene};
 use crate::gpu::Gpu;
-use crate::gpu::shader::{DRAW_CUBOID, DRAW_CAPSULE, DRAW_GROUND};
+use crate::gpu::shader::{DRAW_CAPSULE, DRAW_CUBOID, DRAW_GROUND};
 use bytemuck::{Pod, Zeroable};
 use glam::camera::rh::proj::directx::orthographic;
 use glam::camera::rh::view::look_at_mat4;
@@ -38,8 +38,11 @@ struct Bound {
     group: wgpu::BindGroup,
 }
 
+/// Draws scenes on a GPU.
 pub struct Renderer {
+    /// The device drawn on.
     pub device: wgpu::Device,
+    /// Its queue.
     pub queue: wgpu::Queue,
     view_layout: wgpu::BindGroupLayout,
     shadows_layout: wgpu::BindGroupLayout,
@@ -142,7 +145,12 @@ impl Renderer {
         }
     }
 
-    fn paint(&self, encoder: &mut wgpu::CommandEncoder, beside: Option<&dyn Drawable>, target: &RenderTarget) {
+    fn paint(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        beside: Option<&dyn Drawable>,
+        target: &RenderTarget,
+    ) {
         let sky = wgpu::Color {
             r: 0.70,
             g: 0.77,

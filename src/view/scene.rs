@@ -10,10 +10,15 @@ pub type Colour = [f32; 3];
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Capsule {
+    /// Centre of one end, m.
     pub a: [f32; 3],
+    /// Radius there, m.
     pub radius_a: f32,
+    /// Centre of the other end, m.
     pub b: [f32; 3],
+    /// Radius there, m.
     pub radius_b: f32,
+    /// Colour of the surface.
     pub colour: Colour,
 }
 
@@ -21,18 +26,25 @@ pub struct Capsule {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Cuboid {
+    /// Centre, m.
     pub centre: [f32; 3],
+    /// Half its sides, m.
     pub half: [f32; 3],
+    /// Colour of the surface.
     pub colour: Colour,
 }
 
+/// Everything to draw.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
+    /// Capsules and balls.
     pub capsules: Vec<Capsule>,
+    /// Upright boxes.
     pub cuboids: Vec<Cuboid>,
 }
 
 impl Scene {
+    /// Adds two balls and the hull between them.
     pub fn capsule(&mut self, a: Vec3, radius_a: f32, b: Vec3, radius_b: f32, colour: Colour) {
         self.capsules.push(Capsule {
             a: a.to_array(),
@@ -43,6 +55,7 @@ impl Scene {
         });
     }
 
+    /// Adds a ball.
     pub fn ball(&mut self, centre: Vec3, radius: f32, colour: Colour) {
         self.capsule(centre, radius, centre, radius, colour);
     }

@@ -2,7 +2,7 @@
 
 use super::capsule_rig::{LEFT, RIGHT, TRUNK};
 use super::scene::{Colour, Scene};
-use crate::physics::model::{Geom, Model, GeomShape};
+use crate::physics::model::{Geom, GeomShape, Model};
 use crate::physics::pose::Pose;
 use glam::{Quat, Vec3};
 
@@ -24,7 +24,9 @@ pub fn seen(at: Vec3) -> Vec3 {
 /// Whether a body is there, or shown for comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
+    /// In its own colours.
     Solid,
+    /// In pale ones.
     Ghost,
 }
 

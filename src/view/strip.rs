@@ -2,18 +2,18 @@
 //! given the recorded angles.
 
 use super::camera::Camera;
-use super::render_target::RenderTarget;
 use super::image_files;
+use super::render_target::RenderTarget;
 use super::renderer::Renderer;
 use super::scene::Scene;
 use super::shapes::{self, Look};
+use crate::gpu::Gpu;
 use crate::physics::kinematics::kinematics;
 use crate::physics::model::Model;
 use crate::physics::motion_clip::{MotionClip, pd_targets};
-use crate::physics::simulator::{Simulator, STEP_RATE, SUBSTEPS, SolverOptions, SimulatorState};
 use crate::physics::pose::Pose;
+use crate::physics::simulator::{STEP_RATE, SUBSTEPS, Simulator, SimulatorState, SolverOptions};
 use crate::physics::spatial::Spatial;
-use crate::gpu::Gpu;
 use anyhow::{Context, Result};
 use glam::Vec3;
 use std::path::{Path, PathBuf};

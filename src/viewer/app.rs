@@ -4,7 +4,7 @@
 use super::gamepad::Gamepad;
 use super::maps;
 use super::runners_up::{Found, nearest};
-use super::screen::{Screen, PointerAction};
+use super::screen::{PointerAction, Screen};
 use super::source::{self, Source, Steered};
 use super::timeline::Timeline;
 use crate::gpu::Gpu;
@@ -32,11 +32,13 @@ const LISTED: usize = 8;
 
 /// A policy that can be chosen.
 pub struct PolicyEntry {
+    /// Name in the list.
     pub name: String,
     /// Loads it.
     pub load: Box<dyn Fn() -> Result<Box<dyn Controller>>>,
 }
 
+/// The window of `play`.
 pub struct Viewer {
     context: PlaythroughContext,
     source: Source,
@@ -108,6 +110,7 @@ impl Viewer {
         })
     }
 
+    /// Draws the window and takes its input.
     pub fn show(&mut self, ui: &mut Ui) {
         self.keys(ui);
         self.pass_time(ui);
@@ -134,6 +137,7 @@ impl Viewer {
         }
     }
 
+    /// What has been played.
     pub fn timeline(&self) -> &Timeline {
         &self.timeline
     }

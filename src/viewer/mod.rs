@@ -1,5 +1,6 @@
 //! The window: a controller at work, and why it does what it does.
 
+pub mod app;
 #[cfg(feature = "gamepad")]
 pub mod gamepad;
 pub mod maps;
@@ -8,7 +9,6 @@ pub mod runners_up;
 pub mod screen;
 pub mod source;
 pub mod timeline;
-pub mod app;
 pub mod watch;
 pub mod window;
 

@@ -11,6 +11,7 @@ const PART: u32 = 20;
 /// Between two pictures of a software rasteriser, at least and at most.
 const SELDOM: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
 
+/// The time between two pictures.
 pub struct Pace {
     software: bool,
     /// How long the last picture took.
@@ -18,6 +19,7 @@ pub struct Pace {
 }
 
 impl Pace {
+    /// The pace of a device that has drawn nothing so far.
     pub fn new(gpu: &Gpu) -> Pace {
         Pace {
             software: gpu.software,

@@ -10,10 +10,12 @@ pub struct Found {
     pub frame: usize,
     /// Squared distances: of the pose's features and of the trajectory's.
     pub pose: f32,
+    /// Squared distance of the trajectories.
     pub trajectory: f32,
 }
 
 impl Found {
+    /// Squared distance of the whole features.
     pub fn total(&self) -> f32 {
         self.pose + self.trajectory
     }

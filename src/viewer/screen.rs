@@ -16,7 +16,9 @@ const ZOOM: f32 = 0.002;
 /// Software rasterisers draw fewer pixels: every second one of each row and column.
 const COARSE: f32 = 0.5;
 
+/// A texture in a window, and the renderer that draws into it.
 pub struct Screen {
+    /// The renderer of the scene.
     pub renderer: Renderer,
     target: RenderTarget,
     window: RenderState,
@@ -28,10 +30,13 @@ pub struct Screen {
 /// What the pointer did on the ground, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PointerAction {
+    /// Pressed and released at a point.
     Click([f32; 2]),
     /// Pressed, about to drag.
     Press([f32; 2]),
+    /// Moved to a point while pressed.
     Drag([f32; 2]),
+    /// Released after a drag.
     Release,
 }
 

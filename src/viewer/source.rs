@@ -5,6 +5,7 @@ use crate::train::controller::{Controller, Scripted};
 use anyhow::Result;
 use std::sync::Arc;
 
+/// What moves the character.
 pub enum Source {
     /// A trained policy, on its way to targets.
     Policy(Box<dyn Controller>),
@@ -16,6 +17,7 @@ pub enum Source {
 
 /// m/s of a stick held all the way, and with the key for running.
 pub const WALK: f32 = 1.5;
+/// Speed with the key for running, m/s.
 pub const RUN: f32 = 4.0;
 /// Distance from the character to the point that it is steered to, m.
 pub const LOOK_AHEAD_M: f32 = 10.0;
@@ -30,6 +32,7 @@ pub struct Steered {
 }
 
 impl Steered {
+    /// A character that stands.
     pub fn new(database: Arc<Database>) -> Steered {
         Steered {
             database,

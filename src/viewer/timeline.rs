@@ -17,6 +17,7 @@ pub struct Timeline {
 }
 
 impl Timeline {
+    /// A timeline of one frame.
     pub fn new(first: Playthrough) -> Timeline {
         Timeline {
             moments: VecDeque::from([first]),
@@ -24,6 +25,7 @@ impl Timeline {
         }
     }
 
+    /// The shown frame.
     pub fn now(&self) -> &Playthrough {
         &self.moments[self.at]
     }
@@ -34,18 +36,22 @@ impl Timeline {
         &mut self.moments[self.at]
     }
 
+    /// Number of recorded frames.
     pub fn len(&self) -> usize {
         self.moments.len()
     }
 
+    /// Whether there are no frames; there is always one.
     pub fn is_empty(&self) -> bool {
         self.moments.is_empty()
     }
 
+    /// Index of the shown frame.
     pub fn at(&self) -> usize {
         self.at
     }
 
+    /// Shows another recorded frame.
     pub fn go_to(&mut self, at: usize) {
         self.at = at.min(self.moments.len() - 1);
     }
@@ -54,7 +60,11 @@ impl Timeline {
     ///
     /// # Errors
     /// The controller's.
-    pub fn forward(&mut self, context: &PlaythroughContext, controller: &dyn Controller) -> Result<()> {
+    pub fn forward(
+        &mut self,
+        context: &PlaythroughContext,
+        controller: &dyn Controller,
+    ) -> Result<()> {
         if self.at + 1 == self.moments.len() {
             let mut next = self.now().clone();
             next.advance(context, controller)?;

@@ -2,14 +2,14 @@
 
 use super::pace::Pace;
 use super::screen::Screen;
+use crate::env::EnvBatch;
+use crate::env::locomotion::LocomotionTask;
+use crate::env::live_view::LiveView;
 use crate::gpu::Gpu;
 use crate::motion::database::Database;
 use crate::train::metrics::UpdateMetrics;
 use crate::view::painter::Drawable;
 use crate::view::{Camera, Crowd, Scene};
-use crate::env::locomotion::LocomotionTask;
-use crate::env::EnvBatch;
-use crate::env::live_view::LiveView;
 use anyhow::Result;
 use eframe::egui::{self, Ui};
 use eframe::egui_wgpu::RenderState;
@@ -44,6 +44,7 @@ fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
     of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// The window of a watched training.
 pub struct Crowded {
     database: Arc<Database>,
     task: LocomotionTask,
@@ -57,6 +58,7 @@ pub struct Crowded {
 }
 
 impl Crowded {
+    /// A window on a training that is about to begin.
     pub fn new(
         gpu: &Gpu,
         window: &RenderState,
@@ -77,6 +79,7 @@ impl Crowded {
         }
     }
 
+    /// Draws the window and takes its input.
     pub fn show(&mut self, ui: &mut Ui) {
         self.open();
         egui::Panel::bottom("training").show(ui, |ui| {

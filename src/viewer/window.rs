@@ -2,10 +2,10 @@
 
 use super::app::{PolicyEntry, Viewer};
 use super::watch::{Crowded, Watch};
+use crate::env::locomotion::LocomotionTask;
 use crate::gpu::Gpu;
 use crate::motion::database::Database;
 use crate::view::playthrough::PlaythroughContext;
-use crate::env::locomotion::LocomotionTask;
 use anyhow::{Context, Result, anyhow};
 use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use eframe::{NativeOptions, egui};
@@ -15,6 +15,7 @@ use std::sync::{Arc, OnceLock};
 
 /// What a window shows.
 pub trait Contents {
+    /// Draws the contents and takes input.
     fn show(&mut self, ui: &mut egui::Ui);
 }
 
@@ -64,7 +65,12 @@ pub fn shared(gpu: &Gpu) -> WgpuSetup {
 ///
 /// # Errors
 /// There is no display, a policy cannot be loaded, or the GPU was lost.
-pub fn play(gpu: &Gpu, title: &str, context: PlaythroughContext, policies: Vec<PolicyEntry>) -> Result<()> {
+pub fn play(
+    gpu: &Gpu,
+    title: &str,
+    context: PlaythroughContext,
+    policies: Vec<PolicyEntry>,
+) -> Result<()> {
     let viewer = |window: &RenderState| Viewer::new(gpu, window, context, policies);
     let over = Arc::new(AtomicBool::new(false));
     open(gpu, title, over, |window| Ok(Box::new(viewer(window)?)))

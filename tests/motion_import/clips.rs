@@ -2,7 +2,7 @@
 
 use super::{PERSON, moving, parse, person, skeleton, v};
 use footwork::motion::bvh::Recording;
-use footwork::motion::import::{ImportedMotion, ImportOptions, import};
+use footwork::motion::import::{ImportOptions, ImportedMotion, import};
 use footwork::motion::mirror::{mirror, pairs};
 use footwork::motion::resample::resample;
 use footwork::motion::roles::Roles;
@@ -185,8 +185,9 @@ fn a_folder_is_imported_by_name() {
     assert!(failure(&folder.join("c.bvh")).contains("no usable clip"));
 
     let all = import(&folder, &ImportOptions::default()).unwrap();
-    let names =
-        |import: &ImportedMotion| -> Vec<String> { import.clips.iter().map(|c| c.name.clone()).collect() };
+    let names = |import: &ImportedMotion| -> Vec<String> {
+        import.clips.iter().map(|c| c.name.clone()).collect()
+    };
     assert_eq!(names(&all), ["a", "b"]);
     assert_eq!(all.clips[1].frames(), 75);
     assert!(all.notes[0].contains("c (60)"), "{:?}", all.notes);

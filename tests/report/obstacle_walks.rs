@@ -1,7 +1,7 @@
 //! `obstacle_walks`: the view from above, and the maps beside it.
 
 use super::drawn;
-use footwork::report::obstacle_walks::{self, CELLS, End, DrawnEpisode, Obstacle};
+use footwork::report::obstacle_walks::{self, CELLS, DrawnEpisode, End, Obstacle};
 
 const BOX: [u8; 3] = [0xe0, 0xe3, 0xe8];
 const BLOCKED: [u8; 3] = [0x8b, 0x97, 0xa8];

@@ -23,7 +23,10 @@ fn a_failed_picture_leaves_the_previous_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("picture.png");
     png_file::save(&path, 2, 1, &[0, 1, 2, 3, 4, 5]).unwrap();
-    assert!(png_file::save(&path, 2, 1, &[9; 5]).is_err(), "a byte short");
+    assert!(
+        png_file::save(&path, 2, 1, &[9; 5]).is_err(),
+        "a byte short"
+    );
     assert_eq!(Picture::open(&path).rgb, [0, 1, 2, 3, 4, 5]);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }

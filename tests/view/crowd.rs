@@ -57,12 +57,19 @@ fn one_of_a_crowd(device: Device) {
     let shown = PlacedFrame {
         frame: state.state_u32[state_u32::FRAME] as usize,
         at: [state.state_f32[state_f32::X], state.state_f32[state_f32::Z]],
-        heading: [state.state_f32[state_f32::HEADING_X], state.state_f32[state_f32::HEADING_Z]],
+        heading: [
+            state.state_f32[state_f32::HEADING_X],
+            state.state_f32[state_f32::HEADING_Z],
+        ],
     };
     let mut scene = Scene::default();
     let body = CapsuleRig::of(&DATABASE.skeleton, &DATABASE.roles);
     body.draw(&mut scene, &DATABASE.skeleton, &shown.pose(&DATABASE));
-    let target = Vec3::new(state.state_f32[state_f32::TARGET_X], 0.0, state.state_f32[state_f32::TARGET_Z]);
+    let target = Vec3::new(
+        state.state_f32[state_f32::TARGET_X],
+        0.0,
+        state.state_f32[state_f32::TARGET_Z],
+    );
     scene.capsule(
         target,
         0.06,

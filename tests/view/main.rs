@@ -13,8 +13,8 @@ use footwork::motion::normalise::Weights;
 use footwork::motion::synthetic;
 use footwork::playback::player::Style;
 use footwork::train::controller::{Controller, Scripted};
-use footwork::view::playthrough::PlaythroughContext;
 use footwork::view::painter::Drawable;
+use footwork::view::playthrough::PlaythroughContext;
 use footwork::view::{Camera, RenderTarget, Renderer, Scene};
 use std::sync::{Arc, LazyLock};
 
@@ -54,7 +54,12 @@ struct Picture {
 }
 
 impl Picture {
-    fn draw(scene: &Scene, beside: Option<&dyn Drawable>, camera: &Camera, size: [u32; 2]) -> Picture {
+    fn draw(
+        scene: &Scene,
+        beside: Option<&dyn Drawable>,
+        camera: &Camera,
+        size: [u32; 2],
+    ) -> Picture {
         Self::with(&mut Renderer::new(&gpu()), scene, beside, camera, size)
     }
 

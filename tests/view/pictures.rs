@@ -1,10 +1,10 @@
 use crate::{DATABASE, Picture, Walker, context};
+use footwork::env::locomotion::{LocomotionTask, Obstacles, Plane};
 use footwork::playback::PlacedFrame;
 use footwork::view::capsule_rig::CapsuleRig;
 use footwork::view::debug_draw::scene;
 use footwork::view::playthrough::Playthrough;
 use footwork::view::{Camera, Scene};
-use footwork::env::locomotion::{Obstacles, Plane, LocomotionTask};
 
 const SIZE: [u32; 2] = [240, 160];
 

@@ -1,17 +1,17 @@
 //! The window's contents, used as a person would.
 
-use crate::{DATABASE, Walker, gpu, context};
+use crate::{DATABASE, Walker, context, gpu};
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
+use footwork::env::locomotion::{LocomotionTask, Obstacles, Plane};
 use footwork::kernels::termination;
 use footwork::motion::features::FRAMES_PER_STEP;
+use footwork::view::playthrough::Playthrough;
 use footwork::viewer::Viewer;
 use footwork::viewer::app::PolicyEntry;
 use footwork::viewer::window::shared;
-use footwork::view::playthrough::Playthrough;
-use footwork::env::locomotion::{Obstacles, Plane, LocomotionTask};
 
 fn plane() -> LocomotionTask {
     LocomotionTask::Plane(Plane::default())

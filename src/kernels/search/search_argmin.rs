@@ -11,6 +11,7 @@ crate::shader_params! {
     }
 }
 
+/// Launches the shader.
 pub fn launch(
     gpu: &Gpu,
     distance: &Buffer<f32>,
@@ -26,6 +27,7 @@ pub fn launch(
     );
 }
 
+/// Does on the CPU what the shader does.
 pub fn twin(distance: &[f32], candidates: &[u32], matched: &mut [u32], params: &Params) {
     let count = params.count as usize;
     for (at, matched) in matched.iter_mut().enumerate().take(count) {

@@ -9,6 +9,7 @@ use crate::motion::features::{FEATURE_DIM, ROW_STRIDE};
 pub struct Params {
     /// Queries.
     pub count: u32,
+    /// Rows searched.
     pub candidates: u32,
     /// Rows a block of scores.
     pub block: u32,
@@ -54,6 +55,7 @@ impl Params {
     }
 }
 
+/// Launches the shader, as often as it takes to compare every block.
 pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,

@@ -22,7 +22,7 @@ crate::shader_params! {
 /// Workgroups along x at most: WebGPU's default limit.
 const ACROSS: usize = 65_535;
 
-#[allow(clippy::too_many_arguments)]
+/// Launches the shader.
 pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,
@@ -53,7 +53,6 @@ pub fn launch(
 }
 
 /// Compares all rows of the leaves in the mask, whatever their bytes.
-#[allow(clippy::too_many_arguments)]
 pub fn twin(
     rows: &[[f32; ROW_STRIDE]],
     _quantised_rows: &[[u8; ROW_STRIDE]],

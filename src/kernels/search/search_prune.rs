@@ -24,7 +24,7 @@ crate::shader_params! {
     }
 }
 
-#[allow(clippy::too_many_arguments)]
+/// Launches the shader.
 pub fn launch(
     gpu: &Gpu,
     boxes: &Buffer<f32>,
@@ -52,6 +52,7 @@ pub fn launch(
     );
 }
 
+/// Does on the CPU what the shader does.
 pub fn twin(
     boxes: &[[f32; TRAJECTORY_DIM]],
     distance_codes: &[u8],

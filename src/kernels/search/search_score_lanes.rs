@@ -20,6 +20,7 @@ crate::shader_params! {
 const QUERIES: u32 =
     shader::search_score_lanes::constants::LANES * shader::search_score_lanes::constants::QUERIES;
 
+/// Launches the shader.
 pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,
@@ -41,6 +42,7 @@ pub fn launch(
     );
 }
 
+/// Does on the CPU what the shader does.
 pub fn twin(
     rows: &[[f32; ROW_STRIDE]],
     queries: &[[f32; ROW_STRIDE]],

@@ -21,6 +21,7 @@ crate::shader_params! {
 /// Queries a workgroup scores.
 const QUERIES: u32 = shader::search_score_tiled::constants::TILE;
 
+/// Launches the shader.
 pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,
@@ -42,6 +43,7 @@ pub fn launch(
     );
 }
 
+/// Does on the CPU what the shader does.
 pub fn twin(
     rows: &[[f32; ROW_STRIDE]],
     queries: &[[f32; ROW_STRIDE]],

@@ -22,7 +22,7 @@ crate::shader_params! {
     }
 }
 
-#[allow(clippy::too_many_arguments)]
+/// Launches the shader.
 pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,
@@ -53,7 +53,7 @@ pub fn launch(
     );
 }
 
-#[allow(clippy::too_many_arguments)]
+/// Does on the CPU what the shader does.
 pub fn twin(
     rows: &[[f32; ROW_STRIDE]],
     boxes: &[[f32; TRAJECTORY_DIM]],

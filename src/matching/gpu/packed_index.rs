@@ -21,6 +21,7 @@ pub struct PackedIndex {
     pub frames: u32,
     /// Word where those of the leaves begin; 0 if there are none.
     pub leaf_codes: u32,
+    /// Groups of sixteen leaves.
     pub groups: u32,
     /// Distance a unit of a byte of `distance_codes`.
     pub step: f32,

@@ -53,7 +53,13 @@ fn roll(track: &Track, stance: &Stance) -> Roll {
 }
 
 /// The foot of `side` at `time`, from its stances and the other foot's.
-pub fn foot(track: &Track, stances: &[Stance], others: &[Stance], side: usize, time: f32) -> FootState {
+pub fn foot(
+    track: &Track,
+    stances: &[Stance],
+    others: &[Stance],
+    side: usize,
+    time: f32,
+) -> FootState {
     let landed = stances.partition_point(|stance| stance.from <= time);
     let current = &stances[landed.max(1) - 1];
     match stances.get(landed) {

@@ -38,6 +38,7 @@ const REACH_WINDOW: usize = 3;
 
 /// A clip and what was meant by it.
 pub struct Take {
+    /// The motion.
     pub clip: Clip,
     /// For each frame, left and right: the toe joint is fixed in the world, from the end of the
     /// landing until the foot leaves.

@@ -37,12 +37,14 @@ pub enum End {
 pub struct DrawnEpisode {
     /// What the panel shows, such as "level 9".
     pub title: String,
+    /// All obstacles.
     pub obstacles: Vec<Obstacle>,
     /// The root's ground position at the start and after every step: world x and z, in
     /// metres.
     pub points: Vec<[f32; 2]>,
     /// World x and z of the target, in metres.
     pub target: [f32; 2],
+    /// How it ended.
     pub end: End,
     /// Index into `points` of the position where the maps were observed.
     pub seen: usize,
