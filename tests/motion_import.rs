@@ -4,6 +4,8 @@
 mod clips;
 #[path = "motion_import/format.rs"]
 mod format;
+#[path = "support/mocap.rs"]
+mod mocap;
 #[path = "motion_import/names.rs"]
 mod names;
 #[path = "motion_import/real.rs"]

@@ -1,7 +1,7 @@
 //! `footwork data`: motion in, databases out, and motion that is refused.
 
 use super::Place;
-use std::path::{Path, PathBuf};
+use super::mocap::recordings;
 
 /// A place with the recording `walk/synthetic_000.bvh` and its text.
 fn with_recording() -> (Place, String) {
@@ -216,13 +216,7 @@ fn mistakes_of_an_import_are_explained() {
 
 #[test]
 fn real_recordings_are_imported() {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/mocap");
-    let mocap = std::env::var_os("FOOTWORK_MOCAP").map_or(beside, PathBuf::from);
-    let folder = mocap.join("lafan1");
-    if !folder.is_dir() {
-        println!("SKIPPED: no recordings in {}", mocap.display());
-        return;
-    }
+    let Some(folder) = recordings("lafan1") else { return };
     let place = Place::new();
     let words = format!("data import {} --out real.footwork", folder.display());
     let made = place.done(&words);

@@ -4,6 +4,8 @@ mod bench;
 #[cfg(unix)]
 mod damaged;
 mod data;
+#[path = "../support/mocap.rs"]
+mod mocap;
 mod obstacles;
 #[cfg(unix)]
 mod places;

@@ -1,5 +1,6 @@
 //! Real recordings, where there are some.
 
+use super::mocap::recordings;
 use super::{assert_same_motion, parse, v};
 use footwork::motion::bvh;
 use footwork::motion::clip::Clip;
@@ -7,26 +8,6 @@ use footwork::motion::import::{ImportOptions, MIN_FRAMES, import};
 use footwork::motion::mirror::mirror;
 use footwork::motion::roles::Roles;
 use footwork::motion::{manifest, tpose, units};
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::sync::Once;
-
-/// The folder of real recordings, if there is one.
-fn recordings() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/mocap");
-    let folder = std::env::var_os("FOOTWORK_MOCAP").map_or(beside, PathBuf::from);
-    if folder.join("lafan1").is_dir() {
-        return Some(folder);
-    }
-    // Said once, and not through `eprintln`, which the test runner keeps to itself.
-    static SAY: Once = Once::new();
-    SAY.call_once(|| {
-        let folder = folder.display();
-        let line = format!("SKIPPED: no recordings in {folder} (set FOOTWORK_MOCAP)\n");
-        std::io::stderr().write_all(line.as_bytes()).unwrap();
-    });
-    None
-}
 
 /// Folders, how their manifest calls them, clips and frames at 30 Hz that must come out.
 const FOLDERS: [(&str, &str, &str, usize, usize); 7] = [
@@ -41,7 +22,7 @@ const FOLDERS: [(&str, &str, &str, usize, usize); 7] = [
 
 #[test]
 fn real_recordings_import() {
-    let Some(mocap) = recordings() else { return };
+    let Some(mocap) = recordings("") else { return };
     for (folder, _, _, clips, frames) in FOLDERS {
         let import = import(&mocap.join(folder), &ImportOptions::default()).unwrap();
         let found: usize = import.clips.iter().map(Clip::frames).sum();
@@ -59,7 +40,7 @@ fn real_recordings_import() {
 
 #[test]
 fn what_is_found_agrees_with_the_manifests() {
-    let Some(mocap) = recordings() else { return };
+    let Some(mocap) = recordings("") else { return };
     for (folder, above, prefix, ..) in FOLDERS {
         let listing = mocap.join(above).join("manifest.csv");
         let listing = manifest::read(&listing).unwrap().unwrap();
@@ -90,7 +71,7 @@ fn what_is_found_agrees_with_the_manifests() {
 
 #[test]
 fn real_recordings_survive_writing_and_mirroring() {
-    let Some(mocap) = recordings() else { return };
+    let Some(mocap) = recordings("") else { return };
     for (folder, ..) in FOLDERS {
         let import = import(&mocap.join(folder), &ImportOptions::default()).unwrap();
         let clip = &import.clips[0];
