@@ -186,7 +186,7 @@ impl Info {
 /// Draws the velocities and turning rates of a motion.
 #[cfg(feature = "report")]
 fn draw_coverage(plot: &std::path::Path, motion: &[([f32; 2], f32)]) -> Result<()> {
-    use footwork::report::coverage::{Samples, draw};
+    use footwork::report::coverage::{CoverageSamples, draw};
 
     let speed: Vec<f32> = motion
         .iter()
@@ -198,7 +198,7 @@ fn draw_coverage(plot: &std::path::Path, motion: &[([f32; 2], f32)]) -> Result<(
         .iter()
         .map(|(velocity, _)| [-velocity[0], velocity[1]])
         .collect();
-    let samples = Samples {
+    let samples = CoverageSamples {
         rate_hz: RATE,
         speed: &speed,
         turning: &turning,

@@ -3,19 +3,16 @@
 use super::Usage;
 use anyhow::Result;
 use clap::{Args, ValueEnum};
-use footwork::env::humanoid::batch::{self, SimulatorBatchConfig};
-use footwork::gpu::{Choice, Device, Gpu};
-use footwork::motion::import::ImportOptions;
 use footwork::physics::mjcf;
 use footwork::physics::model::Model;
-use footwork::physics::motion_library::MotionLibrary;
-use footwork::physics::scenes;
 use footwork::physics::simulator::{STEP_RATE, SUBSTEPS, SolverOptions};
+use footwork::physics::scenes;
+use footwork::gpu::{Choice, Device};
 use footwork::report::table::table;
-use footwork::view::strip::strips;
+use footwork::env::humanoid::batch::{self, SimulatorBatchConfig};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -72,9 +69,11 @@ pub struct Sim {
     #[arg(long)]
     json: bool,
     /// In place of random actions: a BVH file, or a folder of them, to put into the body
+    #[cfg(feature = "viewer")]
     #[arg(long, value_name = "PATH", requires = "out", conflicts_with_all = RANDOM)]
     clip: Option<PathBuf>,
     /// Folder for two film strips of each clip: replayed, and with the drives following its angles
+    #[cfg(feature = "viewer")]
     #[arg(long, value_name = "FOLDER", requires = "clip")]
     out: Option<PathBuf>,
 }
@@ -115,6 +114,7 @@ struct Figures {
 
 impl Sim {
     pub fn run(self) -> Result<()> {
+        #[cfg(feature = "viewer")]
         if let (Some(clip), Some(folder)) = (&self.clip, &self.out) {
             return self.draw(clip, folder);
         }
@@ -144,13 +144,18 @@ impl Sim {
         Ok(())
     }
 
-    fn draw(&self, clip: &Path, folder: &Path) -> Result<()> {
+    #[cfg(feature = "viewer")]
+    fn draw(&self, clip: &std::path::Path, folder: &std::path::Path) -> Result<()> {
+        use footwork::motion::import::ImportOptions;
+        use footwork::physics::motion_library::MotionLibrary;
+        use footwork::view::strip::strips;
+
         let model = Arc::new(self.load()?);
         let library = MotionLibrary::load(&[clip], &ImportOptions::default(), &model)?;
         for note in &library.notes {
             eprintln!("note: {note}");
         }
-        let gpu = Gpu::drawing()?;
+        let gpu = footwork::gpu::Gpu::drawing()?;
         for motion in library.motions() {
             for file in strips(&gpu, &model, motion, folder)? {
                 println!("{}", file.display());

@@ -5,6 +5,10 @@ use crate::container::{Section, SectionError};
 use crate::gpu::{Array, Buffer, Device};
 use crate::kernels::learn::{adam, grad_norm};
 use anyhow::Result;
+use rayon::prelude::*;
+
+/// Parameters that a core steps in one go.
+const STRIP: usize = 1 << 14;
 
 /// Running moments of the gradient, on a device.
 pub struct Adam {
@@ -58,8 +62,15 @@ impl Adam {
             _ => {
                 let (gradient, norm) = (gradient.host(), self.norm_partials.host_mut());
                 grad_norm::twin(gradient, norm);
-                let (m, v) = (self.m.host_mut(), self.v.host_mut());
-                adam::twin(gradient, norm, parameters.host_mut(), m, v, &params);
+                let parameters = parameters.host_mut().par_chunks_mut(STRIP);
+                let strips = parameters.zip(gradient.par_chunks(STRIP));
+                let moments = self.m.host_mut().par_chunks_mut(STRIP);
+                let moments = moments.zip(self.v.host_mut().par_chunks_mut(STRIP));
+                strips
+                    .zip(moments)
+                    .for_each(|((parameters, gradient), (m, v))| {
+                        adam::twin(gradient, norm, parameters, m, v, &params);
+                    });
             }
         }
     }

@@ -11,7 +11,7 @@ use super::chart::{self, Axis, Plot, PlotArea};
 
 /// One value for each frame. Frames with a value that is not finite are left out.
 #[derive(Clone, Copy, Debug)]
-pub struct Samples<'a> {
+pub struct CoverageSamples<'a> {
     /// Frames in a second.
     pub rate_hz: f32,
     /// Speed of the root along the ground, in m/s.
@@ -55,7 +55,7 @@ const COLOURS: [RGBColor; 9] = [
 /// # Errors
 ///
 /// If the picture cannot be drawn or written.
-pub fn draw(path: &Path, samples: &Samples<'_>) -> Result<(), ReportError> {
+pub fn draw(path: &Path, samples: &CoverageSamples<'_>) -> Result<(), ReportError> {
     let minutes = 1.0 / (60.0 * f64::from(samples.rate_hz));
     let turns: Vec<(f64, f64)> = pairs(samples.speed.iter().zip(samples.turning));
     let moves: Vec<(f64, f64)> = pairs(samples.velocity.iter().map(|[side, ahead]| (side, ahead)));

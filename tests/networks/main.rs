@@ -451,3 +451,22 @@ fn adam_steps_agree() {
         assert!(moved.fold(0.0, f32::max) < 0.04);
     }
 }
+
+/// What fused kernels would need at once, lavapipe has no buffer for.
+#[test]
+fn minibatches_wider_than_a_buffer_are_taken_in_tensors() {
+    let case = Case::new(&dense(&[32, 32], Activation::Tanh), plain(), 9);
+    let engine = |minibatch: usize| {
+        let (parameters, extras) = (case.networks.parameters(), ACTION + SUMS);
+        let networks = case.networks.networks();
+        Engine::new(&lavapipe(), networks, parameters, extras, 9, minibatch)
+    };
+    let outcome = case.by(engine(500_000).expect("an engine"), &lavapipe());
+    outcome.agrees(&case.oracle(), "tensors");
+    let refused = engine(1 << 23).err().expect("no room");
+    let message = refused.to_string();
+    assert!(
+        message.contains("activations of a minibatch take 1024 MiB"),
+        "{message}"
+    );
+}

@@ -1,7 +1,7 @@
 //! `coverage`: what a database holds, as densities.
 
 use super::drawn;
-use footwork::report::coverage::{self, Samples};
+use footwork::report::coverage::{self, CoverageSamples};
 
 #[test]
 fn coverage_shows_both_densities_and_their_scale() {
@@ -17,7 +17,7 @@ fn coverage_shows_both_densities_and_their_scale() {
         .zip(waves(2.0, 0.017))
         .map(|(side, ahead)| [side, ahead])
         .collect();
-    let samples = Samples {
+    let samples = CoverageSamples {
         rate_hz: 30.0,
         speed: &speed,
         turning: &turning,
@@ -42,7 +42,7 @@ fn coverage_survives_whatever_it_is_given() {
         (0.0, 1.0, 10),
         (f32::NAN, 1.0, 10),
     ] {
-        let samples = Samples {
+        let samples = CoverageSamples {
             rate_hz,
             speed: &vec![value; frames],
             turning: &vec![-value; frames],

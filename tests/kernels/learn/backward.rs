@@ -47,7 +47,11 @@ mod both {
         let mut write = |values: &[f32], width: usize, column: usize| {
             for row in 0..filled {
                 for i in 0..width {
-                    let value = if row < count { values[row * width + i] } else { 0.0 };
+                    let value = if row < count {
+                        values[row * width + i]
+                    } else {
+                        0.0
+                    };
                     grads[layout.at(row, column + i)] = value;
                 }
             }
@@ -57,7 +61,11 @@ mod both {
         for network in 0..NETWORKS {
             let last = layout.network(network).last().expect("a layer");
             let [_, width, _, _, column] = last.sizes();
-            write(&output_grads[count * layout.outputs(0, network)..], width, column);
+            write(
+                &output_grads[count * layout.outputs(0, network)..],
+                width,
+                column,
+            );
         }
         for network in 0..NETWORKS {
             for pair in layout.network(network).windows(2).rev() {
@@ -102,7 +110,10 @@ fn backward_agrees() {
         let [_, width, _, _, column] = case.layout.extras().sizes();
         for row in case.count()..case.filled() {
             let at = |i: usize| forms.launched[case.layout.at(row, column + i)];
-            assert!((0..width).all(|i| at(i) == 0.0), "what fills a block has no gradient");
+            assert!(
+                (0..width).all(|i| at(i) == 0.0),
+                "what fills a block has no gradient"
+            );
         }
     }
 }

@@ -34,7 +34,9 @@ macro_rules! evaluate {
                 outputs: &mut [f32],
                 params: &Params,
             ) {
-                reference($networks, layout, samples, parameters, rows, outputs, params);
+                reference(
+                    $networks, layout, samples, parameters, rows, outputs, params,
+                );
             }
         }
     };
@@ -64,7 +66,11 @@ fn reference(
         let layers = layout.network(network);
         let [inputs, _, _, observed, _] = layers[0].sizes();
         for (row, column) in pairs(filled, inputs) {
-            let value = if row < count { samples[(start + row) * width + column] } else { 0.0 };
+            let value = if row < count {
+                samples[(start + row) * width + column]
+            } else {
+                0.0
+            };
             rows[layout.at(row, observed + column)] = value;
         }
         for (index, layer) in layers.iter().enumerate() {
@@ -104,7 +110,9 @@ fn run(case: &Case, networks: usize, network: u32) -> Forms<(Vec<f32>, Vec<f32>)
         network,
         out_at: 3,
     };
-    let outputs = case.layout.outputs(network as usize, network as usize + networks);
+    let outputs = case
+        .layout
+        .outputs(network as usize, network as usize + networks);
     let len = 3 + case.count() * outputs;
     let groups = [case.count().div_ceil(BLOCK) as u32, 1, networks as u32];
     let words = case.layout.words();
@@ -127,7 +135,11 @@ fn forward_agrees() {
             let forms = run(&case, networks, network);
             for (form, (rows, outputs)) in forms.shaders() {
                 agree(&format!("rows, {form}"), rows, &forms.twin.0);
-                agree(&format!("outputs, {form}"), &outputs[3..], &forms.twin.1[3..]);
+                agree(
+                    &format!("outputs, {form}"),
+                    &outputs[3..],
+                    &forms.twin.1[3..],
+                );
                 assert_eq!(outputs[..3], [crate::inputs::POISON; 3]);
             }
         }

@@ -37,7 +37,10 @@ fn grad_norm_agrees() {
         for (form, parts) in forms.all() {
             agree(form, parts, &forms.twin);
             let sum: f64 = parts.iter().map(|&part| f64::from(part)).sum();
-            assert!((sum - square).abs() < 1e-4 * square, "{form}: {sum} instead of {square}");
+            assert!(
+                (sum - square).abs() < 1e-4 * square,
+                "{form}: {sum} instead of {square}"
+            );
         }
     }
 }

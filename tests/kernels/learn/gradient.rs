@@ -60,7 +60,13 @@ fn gradient_agrees() {
         let (rows, grads) = (run.input(&case.rows), run.input(&case.grads));
         let poison = vec![POISON; case.layout.partials()];
         let mut partials = run.output(poison);
-        whole::twin(&case.layout, &case.rows, &case.grads, &mut partials.host()[..case.layout.partials()], &groups);
+        whole::twin(
+            &case.layout,
+            &case.rows,
+            &case.grads,
+            &mut partials.host()[..case.layout.partials()],
+            &groups,
+        );
         whole::launch(&run.gpu, &layout, &rows, &grads, partials.device(), &groups);
         let checked = run.checked(&footwork::gpu::shader::GRADIENT, groups, &());
         let launched = partials.launched(&run.gpu);

@@ -54,7 +54,9 @@ impl Case {
     }
 
     pub fn all() -> impl Iterator<Item = Case> {
-        let case = |&(hidden, activation, rows): &(&[usize], u32, usize)| Case::new(hidden, activation, rows);
+        let case = |&(hidden, activation, rows): &(&[usize], u32, usize)| {
+            Case::new(hidden, activation, rows)
+        };
         CASES.iter().map(case)
     }
 
@@ -80,7 +82,11 @@ pub fn layout(hidden: &[usize], activation: u32, rows: usize) -> BatchLayout {
         layers
     };
     let networks = [network(ACTION), network(1)];
-    let parameters = networks.iter().flatten().map(|(i, o, _)| (i + 1) * o).sum::<usize>();
+    let parameters = networks
+        .iter()
+        .flatten()
+        .map(|(i, o, _)| (i + 1) * o)
+        .sum::<usize>();
     let layout = BatchLayout::new(&networks, parameters + ACTION, SUMS, rows);
     layout.expect("two networks")
 }
@@ -106,7 +112,11 @@ fn partial_sums_are_bounded() {
     for hidden in [&[32, 32][..], &[1024, 512], &[2048, 2048, 2048]] {
         let layout = layout(hidden, TANH, 8192);
         let one = (layout.head.parameters as usize) + SUMS;
-        assert!(layout.partials() <= one.max(1 << 22), "{}", layout.partials());
+        assert!(
+            layout.partials() <= one.max(1 << 22),
+            "{}",
+            layout.partials()
+        );
         let rows = layout.head.splits as usize * layout.head.split_blocks as usize * BLOCK;
         assert!(rows >= 8192, "every row is in a split");
     }

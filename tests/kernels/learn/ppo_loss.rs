@@ -175,5 +175,8 @@ fn its_gradient_is_that_of_the_papers_loss() {
         }
         clipped += usize::from(extras[ACTION + 4] == 1.0);
     }
-    assert!((10..190).contains(&clipped), "{clipped} of 200 left the clip range");
+    assert!(
+        (10..190).contains(&clipped),
+        "{clipped} of 200 left the clip range"
+    );
 }

@@ -32,8 +32,13 @@ mod plain {
         gradient[..parameters].fill(0.0);
         for split in splits.take(layout.head.splits as usize) {
             let (gradients, more) = split.split_at(parameters);
-            gradient.iter_mut().zip(gradients).for_each(|(sum, value)| *sum += value);
-            sums.iter_mut().zip(more).for_each(|(sum, value)| *sum += value);
+            gradient
+                .iter_mut()
+                .zip(gradients)
+                .for_each(|(sum, value)| *sum += value);
+            sums.iter_mut()
+                .zip(more)
+                .for_each(|(sum, value)| *sum += value);
         }
     }
 }

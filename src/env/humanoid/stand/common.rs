@@ -1,7 +1,7 @@
 //! What environments on both devices need to know: the model, the kernels' parameters.
 
 use super::task::{DT, KEY_BODIES, Stand, spec};
-use crate::env::EnvSpec;
+use crate::env::spec::EnvSpec;
 use crate::env::humanoid::action::action_scale;
 use crate::env::humanoid::batch::{MAX_SPEED, SimulatorBatchConfig};
 use crate::env::humanoid::starts::{START_STATES, start_states};
