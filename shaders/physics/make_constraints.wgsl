@@ -20,6 +20,7 @@
 struct Params {
     envs: u32,
     dt: f32,
+    row_groups: u32,
 }
 
 @group(0) @binding(0) var<storage, read_write> model_table: array<u32>;

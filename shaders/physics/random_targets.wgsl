@@ -7,6 +7,7 @@
 
 struct Params {
     envs: u32,
+    driven: u32,
     action_std: f32, // rad
     seed: u32,
     step_counter: u32,
@@ -20,7 +21,7 @@ struct Params {
 fn random_targets(@builtin(global_invocation_id) id: vec3u) {
     let env = id.x;
     let index = id.y;
-    if (env >= params.envs) { return; }
+    if (env >= params.envs || index >= params.driven) { return; }
     let bits = random4(params.seed, env, params.step_counter, params.stream + index);
     targets[index * params.envs + env] = params.action_std * gaussian(bits);
 }

@@ -15,6 +15,7 @@
 
 struct Params {
     envs: u32,
+    max_contacts: u32,
     max_speed: f32, // m/s and rad/s
 }
 
@@ -45,8 +46,8 @@ fn reset_worlds(@builtin(global_invocation_id) id: vec3u) {
     if (diverged) { counters[DIVERGED * params.envs + env] += 1u; }
     if (!diverged && mask[env] == 0u) { return; }
     for (var k = 0u; k < values; k++) { state[k * params.envs + env] = starts[k * params.envs + env]; }
-    for (var k = 0u; k < 5u * model_table[MAX_CONTACTS] + model_table[JOINT_COUNT]; k++) {
-        warm_start[k * params.envs + env] = select(0u, NONE, k < model_table[MAX_CONTACTS]);
+    for (var k = 0u; k < 5u * params.max_contacts + model_table[JOINT_COUNT]; k++) {
+        warm_start[k * params.envs + env] = select(0u, NONE, k < params.max_contacts);
     }
     for (var k = 0u; k < 3u * (model_table[BODY_COUNT] + force_pairs[0]); k++) { forces[k * params.envs + env] = 0.0; }
 }

@@ -24,6 +24,7 @@ const GRAVITY = 9.81; // m/s^2
 struct Params {
     envs: u32,
     dt: f32,
+    trees: u32,
     kinematics_only: u32, // 1: poses and velocities alone
 }
 
@@ -324,7 +325,7 @@ fn tree_of(index: u32) -> Tree {
 @compute @workgroup_size(64)
 fn smooth_dynamics(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     env = id.x;
-    if (env >= params.envs) { return; }
+    if (env >= params.envs || group.y >= params.trees) { return; }
     let tree = tree_of(group.y);
     for (var local = 0u; local < tree.bodies; local++) {
         forward_pass(tree, local);

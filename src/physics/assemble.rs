@@ -2,7 +2,7 @@
 
 use super::kinematics::{quaternion, store};
 use super::mjcf::ordered;
-use super::model::{Body, Dof, Geom, Joint, JointKind, Model, KinematicTree};
+use super::model::{Body, Dof, Geom, Joint, JointKind, KinematicTree, Model};
 use glam::{Quat, Vec3};
 use std::ops::Range;
 
@@ -41,10 +41,12 @@ fn add(world: &mut Model, part: &Part) {
     world
         .dofs
         .extend(model.dofs.iter().map(|dof| offsets.dof(dof)));
-    world.trees.extend(model.trees.iter().map(|tree| KinematicTree {
-        bodies: shifted(&tree.bodies, offsets.bodies),
-        dofs: shifted(&tree.dofs, offsets.dofs),
-    }));
+    world
+        .trees
+        .extend(model.trees.iter().map(|tree| KinematicTree {
+            bodies: shifted(&tree.bodies, offsets.bodies),
+            dofs: shifted(&tree.dofs, offsets.dofs),
+        }));
     world.qpos0.extend(qpos0(part));
 }
 

@@ -1,11 +1,11 @@
 //! Contacts between the shapes of a world, as MuJoCo detects them: points midway between two surfaces.
 
 mod box_box;
-mod plane;
 mod capsule;
 mod capsule_box;
+mod plane;
 
-use super::model::{Geom, Model, GeomShape};
+use super::model::{Geom, GeomShape, Model};
 use super::pose::Pose;
 use glam::{Mat3, Vec3};
 
@@ -189,7 +189,9 @@ impl PairKind {
 pub fn collide(first: &WorldGeom, second: &WorldGeom, out: &mut ContactManifold) {
     match (first.shape, second.shape) {
         (_, GeomShape::Plane) => {}
-        (GeomShape::Plane, GeomShape::Box { half }) => plane::cuboid(first, &second.cuboid(half), out),
+        (GeomShape::Plane, GeomShape::Box { half }) => {
+            plane::cuboid(first, &second.cuboid(half), out)
+        }
         (GeomShape::Plane, _) => plane::capsule(first, &second.capsule(), out),
         (GeomShape::Box { half: one }, GeomShape::Box { half: other }) => {
             box_box::box_box(&first.cuboid(one), &second.cuboid(other), out);
@@ -225,7 +227,12 @@ pub fn bounding_radius(shape: GeomShape) -> f32 {
 
 /// Detects the contacts of a world whose bodies have these poses, the first `max_contacts` of them in the
 /// order of the model's pairs.
-pub fn detect_contacts(model: &Model, poses: &[Pose], max_contacts: usize, out: &mut DetectedContacts) {
+pub fn detect_contacts(
+    model: &Model,
+    poses: &[Pose],
+    max_contacts: usize,
+    out: &mut DetectedContacts,
+) {
     out.points.clear();
     out.ids.clear();
     out.overflow = 0;
@@ -245,8 +252,11 @@ pub fn detect_contacts(model: &Model, poses: &[Pose], max_contacts: usize, out: 
         let kept = manifold.len.min(free);
         out.points.extend_from_slice(&manifold.as_slice()[..kept]);
         let numbers = &manifold.numbers()[..kept];
-        out.ids
-            .extend(numbers.iter().map(|number| (pair * MAX_POINTS) as u32 + number));
+        out.ids.extend(
+            numbers
+                .iter()
+                .map(|number| (pair * MAX_POINTS) as u32 + number),
+        );
         out.overflow += (manifold.len - kept) as u32;
     }
 }

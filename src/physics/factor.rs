@@ -11,7 +11,8 @@ use multiversion::multiversion;
 /// and so on to the root.
 pub fn columns(model: &Model) -> Vec<usize> {
     let dofs = 0..model.dofs.len();
-    dofs.flat_map(|dof| model.dof_ancestors(Some(dof))).collect()
+    dofs.flat_map(|dof| model.dof_ancestors(Some(dof)))
+        .collect()
 }
 
 /// Turns a packed mass matrix into its factor L, the diagonal inverted.

@@ -56,7 +56,9 @@ pub fn kinematics(model: &Model, q: &[f32], poses: &mut [Pose], axes: &mut [Spat
 #[inline]
 pub fn velocities(model: &Model, v: &[f32], axes: &[Spatial], velocities: &mut [Spatial]) {
     for (index, body) in model.bodies.iter().enumerate() {
-        let mut velocity = body.parent.map_or(Spatial::ZERO, |parent| velocities[parent]);
+        let mut velocity = body
+            .parent
+            .map_or(Spatial::ZERO, |parent| velocities[parent]);
         for dof in body.dofs.clone() {
             velocity += axes[dof] * v[dof];
         }

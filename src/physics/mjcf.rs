@@ -9,6 +9,7 @@ mod class;
 mod drive;
 mod element;
 mod error;
+mod exclude;
 mod frame;
 mod geom;
 mod grammar;
@@ -16,19 +17,18 @@ mod joint;
 mod mass;
 mod settings;
 mod shape;
-mod exclude;
 mod worldbody;
 
 use super::model::Model;
 use class::Classes;
 use element::Element;
 pub use error::{MjcfError, Result};
+pub use exclude::ordered;
 use grammar::MUJOCO;
 use roxmltree::Document;
 use settings::MjcfSettings;
 use std::io::Read;
 use std::path::Path;
-pub use exclude::ordered;
 use worldbody::WorldBuilder;
 
 pub const MAX_BYTES: u64 = 1 << 20;

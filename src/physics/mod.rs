@@ -8,7 +8,6 @@
 //! - [`integrate`], [`simulator`]: a step of one world, from beginning to end;
 //! - [`motion_clip`], [`retarget`], [`motion_library`]: recordings in the body, and what to draw from.
 
-
 pub mod assemble;
 pub mod collision;
 pub mod constraints;
@@ -17,15 +16,15 @@ pub mod dynamics;
 pub mod factor;
 pub mod humanoid;
 pub mod integrate;
-pub mod kinematics;
 pub mod invweight0;
+pub mod kinematics;
 pub mod mjcf;
 pub mod model;
 pub mod motion_clip;
 pub mod motion_library;
-pub mod simulator;
+pub mod pgs;
 pub mod pose;
 pub mod retarget;
 pub mod scenes;
+pub mod simulator;
 pub mod spatial;
-pub mod pgs;

@@ -1,7 +1,7 @@
 //! Projected Gauss-Seidel on the dual of the soft constraint problem: each limit and each edge of
 //! each contact's friction pyramid in turn takes the force that is best for it alone, never a pull.
 
-use super::constraints::{ContactConstraint, Lane, LimitConstraint, ConstraintRows};
+use super::constraints::{ConstraintRows, ContactConstraint, Lane, LimitConstraint};
 use multiversion::multiversion;
 
 /// Improves the forces by `iterations` rounds, and with them the whitened acceleration of the degrees of
@@ -37,7 +37,8 @@ pub fn pgs(
     for _ in 0..iterations {
         for (limit, block) in limits.iter_mut().zip(single) {
             let residual = limit.target - product(rows, limit.row, acceleration);
-            let wanted = (residual - limit.regularization * limit.force) / (block[0][0] + limit.regularization);
+            let wanted = (residual - limit.regularization * limit.force)
+                / (block[0][0] + limit.regularization);
             let force = (limit.force + wanted).max(0.0);
             apply_force(rows, limit.row, force - limit.force, acceleration);
             limit.force = force;
@@ -74,13 +75,18 @@ pub fn along(friction: f32, forces: &[f32; 4]) -> [f32; 3] {
 /// One visit to a contact that accelerates by `row_acc` along its directions. Sets its forces; returns
 /// their change along the directions.
 #[inline(always)]
-fn relax(contact: &mut ContactConstraint, block: &ResponseBlock, mut row_acc: [f32; 3]) -> [f32; 3] {
+fn relax(
+    contact: &mut ContactConstraint,
+    block: &ResponseBlock,
+    mut row_acc: [f32; 3],
+) -> [f32; 3] {
     let mut change = [0.0; 3];
     let friction = contact.friction;
     let edges = if friction > 0.0 { 4 } else { 1 };
     for (edge, &(sign, tangent)) in EDGES[..edges].iter().enumerate() {
         let slope = sign * friction;
-        let residual = contact.target[0] - row_acc[0] + slope * (contact.target[tangent] - row_acc[tangent]);
+        let residual =
+            contact.target[0] - row_acc[0] + slope * (contact.target[tangent] - row_acc[tangent]);
         let diag = block[0][0]
             + 2.0 * slope * block[0][tangent]
             + slope * slope * block[tangent][tangent]

@@ -6,8 +6,8 @@
 //! knee bends ([`limb`]), feet their soles, found where they stand ([`sole`]).
 
 mod anatomy;
-mod limb;
 mod humanoid_joints;
+mod limb;
 mod sole;
 
 use super::humanoid;
@@ -20,8 +20,8 @@ use crate::motion::roles::Roles;
 use crate::motion::units;
 use anatomy::Anatomy;
 use glam::{Quat, Vec3};
-use limb::{Bend, Hinge};
 use humanoid_joints::HumanoidJoints;
+use limb::{Bend, Hinge};
 use sole::Sole;
 
 pub type Result<T> = std::result::Result<T, RetargetError>;
@@ -108,7 +108,10 @@ fn frame(clip: &Clip, index: usize) -> Frame {
     let (at, rotation) = clip.world(index);
     Frame {
         at: at.into_iter().map(|at| UPRIGHT * at).collect(),
-        rotation: rotation.into_iter().map(|rotation| UPRIGHT * rotation).collect(),
+        rotation: rotation
+            .into_iter()
+            .map(|rotation| UPRIGHT * rotation)
+            .collect(),
     }
 }
 

@@ -3,7 +3,8 @@
 
 use super::collision::{DetectedContacts, detect_contacts};
 use super::constraints::{
-    ConstraintRows, ContactConstraint, Lane, LimitConstraint, contact_constraints, limit_constraints,
+    ConstraintRows, ContactConstraint, Lane, LimitConstraint, contact_constraints,
+    limit_constraints,
 };
 use super::drive::{Effort, efforts, limit};
 use super::dynamics::{bias, inertias, mass_matrix};
@@ -11,9 +12,9 @@ use super::factor::{LANES, columns, factor, solve_l, solve_lt};
 use super::integrate::integrate;
 use super::kinematics::{kinematics, origin, velocities};
 use super::model::Model;
+use super::pgs::{ResponseBlock, along, pgs};
 use super::pose::Pose;
 use super::spatial::{Inertia, Spatial};
-use super::pgs::{ResponseBlock, along, pgs};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -160,7 +161,12 @@ impl Simulator {
 
     /// Advances a world by one step. `targets`, `[nu]`, are the drives' (see [`efforts`]);
     /// `external_forces`, `[bodies]`, are torques and forces at the centres of mass in the world's frame.
-    pub fn step(&mut self, state: &mut SimulatorState, targets: &[f32], external_forces: &[Spatial]) {
+    pub fn step(
+        &mut self,
+        state: &mut SimulatorState,
+        targets: &[f32],
+        external_forces: &[Spatial],
+    ) {
         self.forward(state, targets, external_forces);
         self.advance(state);
     }
@@ -177,7 +183,10 @@ impl Simulator {
         );
         state.contact_ids.clone_from(&self.contacts.ids);
         state.contact_forces.clear();
-        let forces = self.contact_constraints.iter().map(|contact| contact.forces);
+        let forces = self
+            .contact_constraints
+            .iter()
+            .map(|contact| contact.forces);
         state.contact_forces.extend(forces);
         state.limit_forces.fill(0.0);
         for limit in &self.limit_constraints {
@@ -191,7 +200,12 @@ impl Simulator {
     }
 
     /// Computes the accelerations of a state, and all that leads to them.
-    pub fn forward(&mut self, state: &SimulatorState, targets: &[f32], external_forces: &[Spatial]) {
+    pub fn forward(
+        &mut self,
+        state: &SimulatorState,
+        targets: &[f32],
+        external_forces: &[Spatial],
+    ) {
         self.inertia_and_bias(&state.q, &state.v);
         self.smooth_acceleration(state, targets, external_forces);
         detect_contacts(
@@ -248,7 +262,12 @@ impl Simulator {
     }
 
     /// Computes accelerations without constraints: by drives, their limits, external forces.
-    pub fn smooth_acceleration(&mut self, state: &SimulatorState, targets: &[f32], external_forces: &[Spatial]) {
+    pub fn smooth_acceleration(
+        &mut self,
+        state: &SimulatorState,
+        targets: &[f32],
+        external_forces: &[Spatial],
+    ) {
         let (q, v, dt) = (&state.q, &state.v, self.options.dt);
         efforts(&self.model, q, v, targets, dt, &mut self.efforts);
         self.apply_external_forces(q, external_forces);

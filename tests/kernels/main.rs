@@ -8,10 +8,10 @@
 mod support;
 
 mod bench;
-mod bodies;
-mod contact;
+mod humanoid;
 mod learn;
 mod locomotion;
+mod physics;
 mod rng;
 mod search;
 

@@ -3,9 +3,10 @@
 
 use crate::golden;
 use footwork::physics::collision::{
-    ContactManifold, ContactPoint, DetectedContacts, MAX_POINTS, WorldGeom, collide, detect_contacts,
+    ContactManifold, ContactPoint, DetectedContacts, MAX_POINTS, WorldGeom, collide,
+    detect_contacts,
 };
-use footwork::physics::model::{Geom, Model, GeomShape};
+use footwork::physics::model::{Geom, GeomShape, Model};
 use footwork::physics::pose::Pose;
 use glam::{Mat3, Quat, Vec3};
 use serde::Deserialize;
@@ -77,7 +78,11 @@ fn radius(shape: GeomShape) -> f32 {
 /// 1e-6 m of rounding turn it by that over their distance. The place along all but parallel axes of
 /// capsules is known to 3e-7 m over their angle. The tangent along a capsule all but upright on a
 /// plane turns by 1e-6 over its tilt.
-fn parts([first, second]: &[WorldGeom; 2], found: &ContactPoint, wanted: &ContactPoint) -> [f32; 4] {
+fn parts(
+    [first, second]: &[WorldGeom; 2],
+    found: &ContactPoint,
+    wanted: &ContactPoint,
+) -> [f32; 4] {
     const BAR: f32 = 1e-5;
     const TURNING: f32 = 1e-6;
     const SHIFTING: f32 = 3e-7;
@@ -203,7 +208,11 @@ fn contacts(model: &Model, poses: &[Pose], max_contacts: usize) -> DetectedConta
 #[test]
 fn finds_what_all_pairs_have_one_by_one() {
     let (model, poses) = (crowd(32), poses(15));
-    let placed: Vec<WorldGeom> = model.geoms.iter().map(|geom| position(geom, &poses)).collect();
+    let placed: Vec<WorldGeom> = model
+        .geoms
+        .iter()
+        .map(|geom| position(geom, &poses))
+        .collect();
     let (mut wanted, mut keys) = (Vec::new(), Vec::new());
     for (pair, &[first, second]) in model.pairs.iter().enumerate() {
         let touches = touches(&placed[first], &placed[second]);

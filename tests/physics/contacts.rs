@@ -2,7 +2,7 @@
 
 use crate::golden::{Golden, quantile, relative};
 use footwork::physics::humanoid::humanoid;
-use footwork::physics::simulator::{Simulator, SolverOptions, SimulatorState};
+use footwork::physics::simulator::{Simulator, SimulatorState, SolverOptions};
 use std::sync::Arc;
 
 #[test]
@@ -25,7 +25,11 @@ fn agrees_with_mujoco_in_a_thousand_states() {
         let targets = row.take(driven);
         let counts = row.take(2).to_vec();
         simulator.forward(&state, targets, &[]);
-        let found = [simulator.contact_constraints.len(), simulator.limit_constraints.len()].map(|n| n as f32);
+        let found = [
+            simulator.contact_constraints.len(),
+            simulator.limit_constraints.len(),
+        ]
+        .map(|n| n as f32);
         if found != counts[..] {
             miscounted += 1;
         }

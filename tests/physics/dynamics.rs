@@ -6,7 +6,7 @@ use footwork::physics::collision::DetectedContacts;
 use footwork::physics::factor::columns;
 use footwork::physics::humanoid::humanoid;
 use footwork::physics::model::Model;
-use footwork::physics::simulator::{Simulator, SolverOptions, SimulatorState};
+use footwork::physics::simulator::{Simulator, SimulatorState, SolverOptions};
 use footwork::physics::spatial::Spatial;
 use glam::Vec3;
 use std::sync::Arc;

@@ -1,15 +1,15 @@
 //! What any engine must do: a box rests, slides and tips as mechanics says; two characters push each
 //! other with one force; what starts mirrored stays mirrored; what is not a number harms nobody else.
 
+use footwork::env::humanoid::batch::{self, SimulatorBatchConfig};
+use footwork::gpu::Device;
 use footwork::physics::humanoid::humanoid;
 use footwork::physics::kinematics::quaternion;
 use footwork::physics::mjcf;
 use footwork::physics::model::{JointKind, Model};
-use footwork::physics::simulator::{Simulator, SUBSTEPS, SolverOptions, SimulatorState};
 use footwork::physics::scenes;
+use footwork::physics::simulator::{SUBSTEPS, Simulator, SimulatorState, SolverOptions};
 use footwork::physics::spatial::Spatial;
-use footwork::gpu::Device;
-use footwork::env::humanoid::batch::{self, SimulatorBatchConfig};
 use glam::{Quat, Vec3};
 use std::path::Path;
 use std::sync::Arc;

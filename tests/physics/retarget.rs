@@ -5,14 +5,14 @@ mod real;
 mod strips;
 mod synthetic;
 
+use footwork::motion::clip::Clip;
+use footwork::motion::roles::Roles;
 use footwork::physics::humanoid::humanoid;
 use footwork::physics::kinematics::kinematics;
-use footwork::physics::model::{JointKind, Model, GeomShape};
+use footwork::physics::model::{GeomShape, JointKind, Model};
 use footwork::physics::motion_clip::MotionClip;
 use footwork::physics::pose::Pose;
 use footwork::physics::spatial::Spatial;
-use footwork::motion::clip::Clip;
-use footwork::motion::roles::Roles;
 use glam::{Quat, Vec3};
 
 /// Of the recordings' axes, y up and z forward, the bodies': z up and x forward.
@@ -74,7 +74,10 @@ impl Bodies<'_> {
 /// Fastest turn of any joint but the root, rad/s.
 fn max_speed(model: &Model, motion: &MotionClip) -> f32 {
     let speeds = (0..motion.frames).flat_map(|frame| {
-        let joints = model.joints.iter().filter(|joint| joint.kind != JointKind::Free);
+        let joints = model
+            .joints
+            .iter()
+            .filter(|joint| joint.kind != JointKind::Free);
         joints.map(move |joint| {
             let v = &motion.v(frame)[joint.v..][..joint.kind.nv()];
             v.iter().map(|v| v * v).sum::<f32>().sqrt()

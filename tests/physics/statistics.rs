@@ -2,10 +2,10 @@
 //! test must not tell them apart.
 
 use crate::golden::Golden;
+use footwork::kernels::rng::{gaussian, random4};
 use footwork::physics::humanoid::humanoid;
 use footwork::physics::model::Model;
-use footwork::physics::simulator::{Simulator, SUBSTEPS, SolverOptions, SimulatorState};
-use footwork::kernels::rng::{gaussian, random4};
+use footwork::physics::simulator::{SUBSTEPS, Simulator, SimulatorState, SolverOptions};
 use rayon::prelude::*;
 use std::sync::Arc;
 

@@ -3,8 +3,8 @@
 use crate::gpu::shader::stand_reward::constants as at;
 use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::kernels::physics::collision::poses_of;
-use crate::kernels::physics::strided::{gather, scatter};
 use crate::kernels::physics::reset_worlds::has_diverged;
+use crate::kernels::physics::strided::{gather, scatter};
 use crate::kernels::termination::{FAILED, RUNNING, TRUNCATED};
 use crate::physics::pose::Pose;
 use glam::Quat;
@@ -123,7 +123,8 @@ pub fn step(
             + params.upright_reward * upright
             + params.stillness_reward * stillness(v);
     }
-    let [step, limit, ret, sum] = [at::STEP, at::LIMIT, at::RETURN, at::UPRIGHT].map(|k| k as usize);
+    let [step, limit, ret, sum] =
+        [at::STEP, at::LIMIT, at::RETURN, at::UPRIGHT].map(|k| k as usize);
     episode[step] += 1.0;
     episode[ret] += gain;
     episode[sum] += upright;

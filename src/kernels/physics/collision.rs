@@ -1,13 +1,13 @@
 //! Contacts between the shapes of a world. Shader: `shaders/physics/collision.wgsl`.
 
+use super::make_constraints::CONTACT_DIM;
 use super::smooth_dynamics::{POSE_DIM, pose};
 use super::strided::{gather, scatter};
-use super::make_constraints::CONTACT_DIM;
-use crate::physics::collision::{DetectedContacts, bounding_radius, detect_contacts};
-use crate::physics::model::{Geom, Model, GeomShape};
-use crate::physics::pose::Pose;
 use crate::gpu::shader::collision::constants as at;
 use crate::gpu::{Buffer, Gpu, groups, shader};
+use crate::physics::collision::{DetectedContacts, bounding_radius, detect_contacts};
+use crate::physics::model::{Geom, GeomShape, Model};
+use crate::physics::pose::Pose;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -50,14 +50,25 @@ pub fn twin(
         .into_par_iter()
         .map(|env| {
             let mut contacts = DetectedContacts::default();
-            detect_contacts(model, &poses_of(poses, envs, env), max_contacts, &mut contacts);
+            detect_contacts(
+                model,
+                &poses_of(poses, envs, env),
+                max_contacts,
+                &mut contacts,
+            );
             contacts
         })
         .collect();
     for (env, found) in found.iter().enumerate() {
         for (slot, point) in found.points.iter().enumerate() {
             let numbers = [point.position, point.normal, point.tangent].map(|v| v.to_array());
-            scatter(contacts, envs, env, slot * CONTACT_DIM, numbers.as_flattened());
+            scatter(
+                contacts,
+                envs,
+                env,
+                slot * CONTACT_DIM,
+                numbers.as_flattened(),
+            );
             scatter(
                 contacts,
                 envs,

@@ -1,11 +1,11 @@
 //! Contact forces on bodies and between them. Shader: `shaders/physics/contact_forces.wgsl`.
 
-use super::strided::{gather, scatter};
 use super::make_constraints::CONTACT_DIM;
-use crate::physics::model::Model;
-use crate::physics::pgs::along;
+use super::strided::{gather, scatter};
 use crate::gpu::shader::contact_forces::constants as at;
 use crate::gpu::{Buffer, Gpu, groups, shader};
+use crate::physics::model::Model;
+use crate::physics::pgs::along;
 use glam::Vec3;
 
 crate::shader_params! {
@@ -43,7 +43,14 @@ pub fn launch(
         &shader::CONTACT_FORCES,
         groups(&shader::CONTACT_FORCES, params.envs as usize),
         &[
-            tables, contacts, contact_ids, counts, warm_start, force_pairs, forces, counters,
+            tables,
+            contacts,
+            contact_ids,
+            counts,
+            warm_start,
+            force_pairs,
+            forces,
+            counters,
         ],
         params,
     );

@@ -3,12 +3,12 @@
 
 use super::smooth_dynamics::{DynamicsLayout, read, spatial};
 use super::strided::{gather, scatter};
-use crate::physics::collision::ContactPoint;
-use crate::physics::model::Model;
-use crate::physics::simulator::{Simulator, SimulatorState};
-use crate::physics::pgs::{ResponseBlock, one, three};
 use crate::gpu::shader::make_constraints::constants as at;
 use crate::gpu::{Buffer, Gpu, groups, shader};
+use crate::physics::collision::ContactPoint;
+use crate::physics::model::Model;
+use crate::physics::pgs::{ResponseBlock, one, three};
+use crate::physics::simulator::{Simulator, SimulatorState};
 use glam::Vec3;
 
 crate::shader_params! {
@@ -16,6 +16,8 @@ crate::shader_params! {
         pub envs: u32,
         /// Seconds of a step.
         pub dt: f32,
+        /// See [`row_groups`].
+        pub row_groups: u32,
     }
 }
 
@@ -25,8 +27,8 @@ pub const CONTACT_DIM: usize = at::CONTACT_DIM as usize;
 pub const CONSTRAINT_DIM: usize = at::CONSTRAINT_DIM as usize;
 
 /// Rows of workgroups: one a contact, then one for every three joints.
-pub fn row_groups(model: &Model, max_contacts: usize) -> usize {
-    max_contacts + model.joints.len().div_ceil(3)
+pub fn row_groups(model: &Model, max_contacts: usize) -> u32 {
+    (max_contacts + model.joints.len().div_ceil(3)) as u32
 }
 
 /// Rows of an environment.
@@ -36,7 +38,6 @@ pub fn rows(model: &Model, max_contacts: usize) -> usize {
 
 pub fn launch(
     gpu: &Gpu,
-    rows_of_groups: usize,
     tables: &Buffer<u32>,
     state: &Buffer<f32>,
     dynamics: &Buffer<f32>,
@@ -50,7 +51,7 @@ pub fn launch(
     let [across, ..] = groups(&shader::MAKE_CONSTRAINTS, params.envs as usize);
     gpu.launch(
         &shader::MAKE_CONSTRAINTS,
-        [across, rows_of_groups as u32, 1],
+        [across, params.row_groups, 1],
         &[
             tables,
             state,
@@ -84,7 +85,13 @@ pub fn twin(
         read(&model, state, envs, env, &mut world);
         gather(dynamics, envs, env, 0, &mut axes);
         simulator.axes = axes.chunks_exact(6).map(spatial).collect();
-        gather(dynamics, envs, env, sections.factors, &mut simulator.factors);
+        gather(
+            dynamics,
+            envs,
+            env,
+            sections.factors,
+            &mut simulator.factors,
+        );
         detect_contacts(simulator, contacts, contact_ids, envs, env, count as usize);
         simulator.make_constraints(&world);
         for joint in 0..model.joints.len() {
@@ -100,7 +107,14 @@ pub fn twin(
             set(at::REGULARIZATION, limit.regularization);
             set(at::ACTIVE, 1.0);
             set(at::BLOCK, one(&simulator.rows, limit.row)[0][0]);
-            write_row(simulator, limit.row, rows, envs, env, 3 * max_contacts + limit.joint);
+            write_row(
+                simulator,
+                limit.row,
+                rows,
+                envs,
+                env,
+                3 * max_contacts + limit.joint,
+            );
         }
         for (slot, contact) in simulator.contact_constraints.iter().enumerate() {
             let place = slot * CONSTRAINT_DIM;
@@ -159,7 +173,14 @@ fn flat(block: &ResponseBlock) -> [f32; 6] {
 }
 
 /// A row, to `[rows][quads][envs][4]`.
-fn write_row(simulator: &Simulator, row: usize, rows: &mut [f32], envs: usize, env: usize, to: usize) {
+fn write_row(
+    simulator: &Simulator,
+    row: usize,
+    rows: &mut [f32],
+    envs: usize,
+    env: usize,
+    to: usize,
+) {
     let quads = simulator.model.dofs.len().div_ceil(4);
     let values = &simulator.rows.row(row)[..4 * quads];
     for (quad, numbers) in values.chunks_exact(4).enumerate() {

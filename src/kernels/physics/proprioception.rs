@@ -151,7 +151,10 @@ pub fn observe(
     put(&v[tree.dofs.start + if free { 6 } else { 0 }..tree.dofs.end]);
     let below = Vec3::new(root.position.x, root.position.y, 0.0);
     for &body in &character[1..] {
-        put(&in_heading_frame(heading, poses[body as usize].position - below));
+        put(&in_heading_frame(
+            heading,
+            poses[body as usize].position - below,
+        ));
     }
 }
 

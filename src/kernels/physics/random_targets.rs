@@ -1,11 +1,13 @@
 //! Draws targets for the drives at random. Shader: `shaders/physics/random_targets.wgsl`.
 
-use crate::kernels::rng::{gaussian, random4};
 use crate::gpu::{Buffer, Gpu, groups, shader};
+use crate::kernels::rng::{gaussian, random4};
 
 crate::shader_params! {
     pub struct Params for random_targets {
         pub envs: u32,
+        /// Drives of an environment.
+        pub driven: u32,
         /// Standard deviation of the targets, rad.
         pub action_std: f32,
         pub seed: u32,
@@ -15,15 +17,16 @@ crate::shader_params! {
     }
 }
 
-pub fn launch(gpu: &Gpu, driven: usize, targets: &Buffer<f32>, params: &Params) {
+pub fn launch(gpu: &Gpu, targets: &Buffer<f32>, params: &Params) {
     let [across, ..] = groups(&shader::RANDOM_TARGETS, params.envs as usize);
-    let groups = [across, driven as u32, 1];
+    let groups = [across, params.driven, 1];
     gpu.launch(&shader::RANDOM_TARGETS, groups, &[targets], params);
 }
 
 pub fn twin(targets: &mut [f32], params: &Params) {
     let envs = params.envs as usize;
-    for (index, wanted) in targets.iter_mut().enumerate() {
+    let targets = targets.iter_mut().take(envs * params.driven as usize);
+    for (index, wanted) in targets.enumerate() {
         *wanted = target(params, index / envs, index % envs);
     }
 }

@@ -1,14 +1,16 @@
 //! Starts worlds anew, asked to or broken. Shader: `shaders/physics/reset_worlds.wgsl`.
 
 use super::contact_forces::DIVERGED;
-use super::strided::{gather, scatter};
 use super::solve_and_integrate::NO_CONTACT;
-use crate::physics::model::Model;
+use super::strided::{gather, scatter};
 use crate::gpu::{Buffer, Gpu, groups, shader};
+use crate::physics::model::Model;
 
 crate::shader_params! {
     pub struct Params for reset_worlds {
         pub envs: u32,
+        /// Contacts an environment has room for.
+        pub max_contacts: u32,
         /// m/s and rad/s; what is faster has diverged.
         pub max_speed: f32,
     }
@@ -29,14 +31,22 @@ pub fn launch(
     gpu.launch(
         &shader::RESET_WORLDS,
         groups(&shader::RESET_WORLDS, params.envs as usize),
-        &[tables, mask, starts, state, warm_start, force_pairs, forces, counters],
+        &[
+            tables,
+            mask,
+            starts,
+            state,
+            warm_start,
+            force_pairs,
+            forces,
+            counters,
+        ],
         params,
     );
 }
 
 pub fn twin(
     model: &Model,
-    max_contacts: usize,
     mask: &[u32],
     starts: &[f32],
     state: &mut [f32],
@@ -46,7 +56,7 @@ pub fn twin(
     counters: &mut [u32],
     params: &Params,
 ) {
-    let envs = params.envs as usize;
+    let (envs, max_contacts) = (params.envs as usize, params.max_contacts as usize);
     let mut values = vec![0.0; model.nq() + model.dofs.len()];
     for env in 0..envs {
         gather(state, envs, env, 0, &mut values);

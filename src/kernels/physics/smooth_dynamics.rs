@@ -2,11 +2,11 @@
 //! `shaders/physics/smooth_dynamics.wgsl`.
 
 use super::strided::{gather, scatter};
-use crate::physics::model::Model;
-use crate::physics::simulator::{Simulator, SimulatorState};
-use crate::physics::pose::Pose;
-use crate::physics::spatial::Spatial;
 use crate::gpu::{Buffer, Gpu, groups, shader};
+use crate::physics::model::Model;
+use crate::physics::pose::Pose;
+use crate::physics::simulator::{Simulator, SimulatorState};
+use crate::physics::spatial::Spatial;
 use glam::{Quat, Vec3};
 
 crate::shader_params! {
@@ -14,6 +14,8 @@ crate::shader_params! {
         pub envs: u32,
         /// Seconds of a step.
         pub dt: f32,
+        /// Trees of the model.
+        pub trees: u32,
         /// 1: poses and velocities alone.
         pub kinematics_only: u32,
     }
@@ -48,7 +50,6 @@ impl DynamicsLayout {
 
 pub fn launch(
     gpu: &Gpu,
-    trees: usize,
     tables: &Buffer<u32>,
     state: &Buffer<f32>,
     targets: &Buffer<f32>,
@@ -60,7 +61,7 @@ pub fn launch(
     let [across, ..] = groups(&shader::SMOOTH_DYNAMICS, params.envs as usize);
     gpu.launch(
         &shader::SMOOTH_DYNAMICS,
-        [across, trees as u32, 1],
+        [across, params.trees, 1],
         &[tables, state, targets, external_forces, poses, dynamics],
         params,
     );
@@ -98,7 +99,13 @@ pub fn twin(
         simulator.smooth_acceleration(&world, &wanted, &pushed);
         scatter(dynamics, envs, env, 0, &flat(&simulator.axes));
         scatter(dynamics, envs, env, at.factors, &simulator.factors);
-        scatter(dynamics, envs, env, at.qacc_whitened, &simulator.qacc_whitened);
+        scatter(
+            dynamics,
+            envs,
+            env,
+            at.qacc_whitened,
+            &simulator.qacc_whitened,
+        );
     }
 }
 

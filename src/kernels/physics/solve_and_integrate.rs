@@ -1,13 +1,13 @@
 //! Projected Gauss-Seidel over limits and contacts, then a step forward. Shader:
 //! `shaders/physics/solve_and_integrate.wgsl`.
 
+use super::make_constraints::CONSTRAINT_DIM;
 use super::smooth_dynamics::{DynamicsLayout, read, write};
 use super::strided::{gather, scatter};
-use super::make_constraints::CONSTRAINT_DIM;
-use crate::physics::constraints::{ContactConstraint, LimitConstraint};
-use crate::physics::simulator::{Simulator, SimulatorState};
 use crate::gpu::shader::make_constraints::constants as at;
 use crate::gpu::{Buffer, Gpu, groups, shader};
+use crate::physics::constraints::{ContactConstraint, LimitConstraint};
+use crate::physics::simulator::{Simulator, SimulatorState};
 
 crate::shader_params! {
     pub struct Params for solve_and_integrate {
@@ -72,7 +72,13 @@ pub fn twin(
     let mut numbers = [0.0; CONSTRAINT_DIM];
     for env in 0..envs {
         read(&model, state, envs, env, &mut world);
-        gather(dynamics, envs, env, sections.factors, &mut simulator.factors);
+        gather(
+            dynamics,
+            envs,
+            env,
+            sections.factors,
+            &mut simulator.factors,
+        );
         gather(
             dynamics,
             envs,
@@ -128,7 +134,13 @@ pub fn twin(
 }
 
 /// Reads the forces of the step before out of `warm_start`.
-pub fn read_warm_start(warm_start: &[u32], envs: usize, env: usize, max_contacts: usize, world: &mut SimulatorState) {
+pub fn read_warm_start(
+    warm_start: &[u32],
+    envs: usize,
+    env: usize,
+    max_contacts: usize,
+    world: &mut SimulatorState,
+) {
     world.contact_ids.clear();
     world.contact_forces.clear();
     for slot in 0..max_contacts {
@@ -146,19 +158,41 @@ pub fn read_warm_start(warm_start: &[u32], envs: usize, env: usize, max_contacts
 }
 
 /// Writes the forces of a step to `warm_start`.
-pub fn write_warm_start(world: &SimulatorState, warm_start: &mut [u32], envs: usize, env: usize, max_contacts: usize) {
+pub fn write_warm_start(
+    world: &SimulatorState,
+    warm_start: &mut [u32],
+    envs: usize,
+    env: usize,
+    max_contacts: usize,
+) {
     for slot in 0..max_contacts {
         let id = world.contact_ids.get(slot).copied().unwrap_or(NO_CONTACT);
         let forces = world.contact_forces.get(slot).copied().unwrap_or_default();
         scatter(warm_start, envs, env, slot, &[id]);
-        scatter(warm_start, envs, env, max_contacts + 4 * slot, &forces.map(f32::to_bits));
+        scatter(
+            warm_start,
+            envs,
+            env,
+            max_contacts + 4 * slot,
+            &forces.map(f32::to_bits),
+        );
     }
-    let limits: Vec<u32> = world.limit_forces.iter().map(|force| force.to_bits()).collect();
+    let limits: Vec<u32> = world
+        .limit_forces
+        .iter()
+        .map(|force| force.to_bits())
+        .collect();
     scatter(warm_start, envs, env, 5 * max_contacts, &limits);
 }
 
 /// Reads a row, and gives its place among the world's.
-fn take_row(simulator: &mut Simulator, rows: &[f32], envs: usize, env: usize, from: usize) -> usize {
+fn take_row(
+    simulator: &mut Simulator,
+    rows: &[f32],
+    envs: usize,
+    env: usize,
+    from: usize,
+) -> usize {
     let quads = simulator.model.dofs.len().div_ceil(4);
     let row = simulator.rows.add();
     let values = &mut simulator.rows.row_mut(row)[..4 * quads];

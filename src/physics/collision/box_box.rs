@@ -2,7 +2,7 @@
 //! a face, the other box's face, clipped by the sides of the first, touches with its corners; across
 //! two edges, these touch in a point.
 
-use super::{Cuboid, MAX_POINTS, ContactPoint, ContactManifold, sign};
+use super::{ContactManifold, ContactPoint, Cuboid, MAX_POINTS, sign};
 use glam::{Mat3, Vec3};
 
 /// Squared sine of the angle below which edges are parallel: the faces' axes suffice.
@@ -144,7 +144,10 @@ fn edge_edge(frame: &Cuboid, pair: &Pair, edges: usize, along: Vec3, out: &mut C
     }
     let [a, b] = apart;
     let position = frame.rotation * (0.5 * (a + b)) + frame.centre;
-    out.add(0, ContactPoint::new(position, frame.rotation * normal, normal.dot(b - a)));
+    out.add(
+        0,
+        ContactPoint::new(position, frame.rotation * normal, normal.dot(b - a)),
+    );
 }
 
 /// Middle of the edge along `edge` that is farthest out; the other one if two may be and `other`.

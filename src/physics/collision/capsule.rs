@@ -1,6 +1,6 @@
 //! Spheres and capsules with each other: where the points of their axes nearest to each other are.
 
-use super::{Capsule, ContactPoint, ContactManifold, sign};
+use super::{Capsule, ContactManifold, ContactPoint, sign};
 use glam::Vec3;
 
 /// Squared sine of the angle below which two capsules lie side by side.

@@ -2,7 +2,7 @@
 //! its axis that is nearest to the box, and one at the end of the stretch of axis that runs on
 //! along the box from there, as MuJoCo has it.
 
-use super::{Capsule, Cuboid, ContactPoint, ContactManifold, sign};
+use super::{Capsule, ContactManifold, ContactPoint, Cuboid, sign};
 use glam::{BVec3, Vec3};
 
 /// What is not nearer by this, m, is as near: rounding does not decide.
@@ -52,7 +52,13 @@ pub fn capsule_box(round: &Capsule, cuboid: &Cuboid, out: &mut ContactManifold) 
 }
 
 /// `centre` is in the frame of the box.
-fn sphere_box(number: usize, centre: Vec3, radius: f32, cuboid: &Cuboid, out: &mut ContactManifold) {
+fn sphere_box(
+    number: usize,
+    centre: Vec3,
+    radius: f32,
+    cuboid: &Cuboid,
+    out: &mut ContactManifold,
+) {
     let away = centre.clamp(-cuboid.half, cuboid.half) - centre;
     let outside = away.length();
     let (normal, gap) = match outside > 0.0 {
@@ -62,7 +68,10 @@ fn sphere_box(number: usize, centre: Vec3, radius: f32, cuboid: &Cuboid, out: &m
     let distance = gap - radius;
     if distance < 0.0 {
         let position = cuboid.rotation * (centre + normal * (0.5 * (radius + gap))) + cuboid.centre;
-        out.add(number, ContactPoint::new(position, cuboid.rotation * normal, distance));
+        out.add(
+            number,
+            ContactPoint::new(position, cuboid.rotation * normal, distance),
+        );
     }
 }
 

@@ -1,6 +1,6 @@
 //! Whatever reaches below a plane.
 
-use super::{Capsule, Cuboid, WorldGeom, ContactPoint, ContactManifold, across};
+use super::{Capsule, ContactManifold, ContactPoint, Cuboid, WorldGeom, across};
 use glam::{BVec3, Vec3};
 
 /// A box touches with its lowest corners, at most so many.

@@ -60,11 +60,7 @@ impl Mass {
         let inertia = parts.iter().fold(DMat3::ZERO, |sum, part| {
             sum + part.inertia + part.mass * displaced(part.com - com)
         });
-        Mass {
-            mass,
-            com,
-            inertia,
-        }
+        Mass { mass, com, inertia }
     }
 
     /// What the element `inertial` says.

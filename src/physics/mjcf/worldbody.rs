@@ -9,7 +9,7 @@ use super::grammar::{BODY, GEOM, INERTIAL, WORLD};
 use super::joint::{self, Jointed};
 use super::mass::Mass;
 use super::settings::MjcfSettings;
-use crate::physics::model::{Body, Dof, JointKind, Model, GeomShape, KinematicTree};
+use crate::physics::model::{Body, Dof, GeomShape, JointKind, KinematicTree, Model};
 use std::collections::{HashMap, HashSet};
 
 /// Of bodies, of joints and of geoms: more are a mistake, or an attack.
@@ -137,7 +137,9 @@ impl<'a> WorldBuilder<'a> {
             joints.push(joint::read(child, self.settings)?);
         }
         together(&joints)?;
-        let free = joints.iter().find(|read| read.joint.kind == JointKind::Free);
+        let free = joints
+            .iter()
+            .find(|read| read.joint.kind == JointKind::Free);
         match free.filter(|_| parent != 0) {
             None => Ok(joints),
             Some(free) => {
@@ -215,7 +217,9 @@ impl<'a> WorldBuilder<'a> {
         match joint.kind {
             JointKind::Free => {
                 model.qpos0.extend(position.to_array());
-                model.qpos0.extend([rotation.w, rotation.x, rotation.y, rotation.z]);
+                model
+                    .qpos0
+                    .extend([rotation.w, rotation.x, rotation.y, rotation.z]);
             }
             JointKind::Ball => model.qpos0.extend([1.0, 0.0, 0.0, 0.0]),
             JointKind::Hinge => model.qpos0.push(0.0),
@@ -298,7 +302,9 @@ impl<'a> WorldBuilder<'a> {
 /// Refuses joints that one body cannot have together.
 fn together(joints: &[Jointed]) -> Result<()> {
     let several = joints.len() > 1;
-    let free = joints.iter().find(|read| read.joint.kind == JointKind::Free);
+    let free = joints
+        .iter()
+        .find(|read| read.joint.kind == JointKind::Free);
     if let Some(free) = free.filter(|_| several) {
         let problem = "is free; a body that has such a joint has no other";
         return Err(free.element.error(problem));

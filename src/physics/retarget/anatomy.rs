@@ -1,6 +1,6 @@
 //! Which joints of a skeleton are which of a person's, and which way its axes point.
 
-use super::{RetargetError, Result};
+use super::{Result, RetargetError};
 use crate::motion::roles::Roles;
 use crate::motion::skeleton::Skeleton;
 use glam::{Mat3, Quat, Vec3};

@@ -1,7 +1,7 @@
 //! The humanoid posed: from what its parts should do in the world to the positions of its joints.
 
 use super::limb::Bend;
-use super::{RetargetError, TargetPose, Result};
+use super::{Result, RetargetError, TargetPose};
 use crate::physics::drive::rotation_vector;
 use crate::physics::kinematics::{kinematics, store};
 use crate::physics::model::{Geom, Joint, JointKind, Model};

@@ -99,8 +99,7 @@ fn starts_agree() {
         };
         let mask: Vec<u32> = (0..envs as u32).map(|env| env % 3).collect();
         let states = draw.normals(count * width);
-        let forms =
-            forms!(draw_starts, DRAW_STARTS, envs, params; mask, states, out width * envs);
+        let forms = forms!(draw_starts, DRAW_STARTS, envs, params; mask, states, out width * envs);
         for (form, starts) in forms.shaders() {
             same(form, starts, &forms.twin);
         }

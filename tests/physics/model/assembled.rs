@@ -4,7 +4,7 @@ use super::parse;
 use footwork::physics::assemble::{Part, assemble};
 use footwork::physics::collision::PairKind;
 use footwork::physics::humanoid::{humanoid, punching_box};
-use footwork::physics::model::{JointKind, Model, GeomShape};
+use footwork::physics::model::{GeomShape, JointKind, Model};
 use glam::{Quat, Vec3};
 use std::collections::HashSet;
 use std::f32::consts::FRAC_PI_2;
@@ -37,7 +37,10 @@ fn a_humanoid_and_a_box() {
     );
     assert_eq!(world.qpos0[43..46], [1.0, 0.0, 0.9]);
     // One ground; the box touches it and each of the body's 18 geoms.
-    let planes = world.geoms.iter().filter(|geom| geom.shape == GeomShape::Plane);
+    let planes = world
+        .geoms
+        .iter()
+        .filter(|geom| geom.shape == GeomShape::Plane);
     assert_eq!(planes.count(), 1);
     assert_eq!(world.pairs.len(), body.pairs.len() + 1 + 18);
     coherent(&world);
@@ -72,7 +75,10 @@ fn two_humanoids() {
     let position = Vec3::from_slice(&world.qpos0[43..]);
     assert!(position.abs_diff_eq(Vec3::new(1.0, 0.0, body.qpos0[2]), 1e-6));
     let rotation = Quat::from_rotation_z(FRAC_PI_2);
-    assert_eq!(world.qpos0[46..50], [rotation.w, rotation.x, rotation.y, rotation.z]);
+    assert_eq!(
+        world.qpos0[46..50],
+        [rotation.w, rotation.x, rotation.y, rotation.z]
+    );
     // Twice a body's own, and each geom with each of the other's.
     assert_eq!(world.pairs.len(), 2 * body.pairs.len() + 18 * 18);
 }

@@ -5,7 +5,7 @@ use crate::golden;
 use footwork::physics::collision::PairKind;
 use footwork::physics::humanoid::{BODIES, humanoid, punching_box};
 use footwork::physics::mjcf;
-use footwork::physics::model::{Drive, JointKind, Model, GeomShape, SolverParams};
+use footwork::physics::model::{Drive, GeomShape, JointKind, Model, SolverParams};
 use glam::{Mat3, Quat, Vec3};
 use serde_json::Value;
 use std::io::Write;
@@ -96,10 +96,7 @@ fn our_humanoid_is_as_designed() {
     let model = humanoid();
     let names: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
     assert_eq!(names, BODIES);
-    assert_eq!(
-        (model.nv(), model.nu(), model.nq()),
-        (34, 28, 43)
-    );
+    assert_eq!((model.nv(), model.nu(), model.nq()), (34, 28, 43));
     let masses = [
         10.0, 12.0, 3.88, 1.5, 1.0, 0.5, 1.5, 1.0, 0.5, 4.5, 3.0, 1.0, 4.5, 3.0, 1.0,
     ];
@@ -142,10 +139,7 @@ fn our_humanoid_is_as_designed() {
 #[test]
 fn the_box_is_as_designed() {
     let model = punching_box();
-    assert_eq!(
-        (model.bodies.len(), model.mass(), model.nv()),
-        (1, 8.64, 6)
-    );
+    assert_eq!((model.bodies.len(), model.mass(), model.nv()), (1, 8.64, 6));
     let half = Vec3::new(0.2, 0.2, 0.9);
     assert_eq!(model.geoms[1].shape, GeomShape::Box { half });
     assert_eq!(
@@ -243,7 +237,11 @@ fn compare_joint(told: &str, model: &Model, index: usize, fact: &Value) {
     if joint.kind == JointKind::Free {
         return;
     }
-    close(told, &joint.position.to_array(), &numbers(&fact["position"]));
+    close(
+        told,
+        &joint.position.to_array(),
+        &numbers(&fact["position"]),
+    );
     close(
         told,
         &solver_params(&joint.solver_params),
@@ -307,7 +305,11 @@ fn compare_geom(told: &str, model: &Model, index: usize, fact: &Value) {
     pose(told, geom.position, geom.rotation, &fact["pose"]);
     close(told, &[geom.friction], &[number(&fact["friction"])]);
     assert_eq!(geom.frictionless, fact["frictionless"], "{told}");
-    close(told, &solver_params(&geom.solver_params), &numbers(&fact["solver_params"]));
+    close(
+        told,
+        &solver_params(&geom.solver_params),
+        &numbers(&fact["solver_params"]),
+    );
 }
 
 /// The same pairs, family after family, in each pair the simpler shape first.

@@ -1,15 +1,15 @@
 //! Motions drawn by weight, at any time.
 
 use super::performed;
-use footwork::physics::humanoid::{humanoid, punching_box};
-use footwork::physics::kinematics::quaternion;
-use footwork::physics::model::Model;
-use footwork::physics::motion_library::{MotionLibraryError, MotionLibrary};
 use footwork::kernels::rng::{random4, uniform01};
 use footwork::motion::bvh;
 use footwork::motion::clip::Clip;
 use footwork::motion::import::ImportOptions;
 use footwork::motion::roles::Roles;
+use footwork::physics::humanoid::{humanoid, punching_box};
+use footwork::physics::kinematics::quaternion;
+use footwork::physics::model::Model;
+use footwork::physics::motion_library::{MotionLibrary, MotionLibraryError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -33,7 +33,10 @@ fn library() -> (Arc<Model>, MotionLibrary) {
     (model, library.expect("three motions"))
 }
 
-fn load<P: AsRef<Path>>(paths: &[P], model: &Arc<Model>) -> Result<MotionLibrary, MotionLibraryError> {
+fn load<P: AsRef<Path>>(
+    paths: &[P],
+    model: &Arc<Model>,
+) -> Result<MotionLibrary, MotionLibraryError> {
     MotionLibrary::load(paths, &ImportOptions::default(), model)
 }
 
@@ -41,7 +44,10 @@ fn load<P: AsRef<Path>>(paths: &[P], model: &Arc<Model>) -> Result<MotionLibrary
 fn motions_are_drawn_by_weight_and_times_evenly() {
     const DRAWS: u32 = 200_000;
     let (_, library) = library();
-    let qacc_whitened = library.clone().qacc_whitened(&[0.0, 1.0, 3.0]).expect("weights");
+    let qacc_whitened = library
+        .clone()
+        .qacc_whitened(&[0.0, 1.0, 3.0])
+        .expect("weights");
     for (library, shares) in [
         (&library, [4.0 / 7.0, 2.0 / 7.0, 1.0 / 7.0]),
         (&qacc_whitened, [0.0, 0.25, 0.75]),
@@ -60,10 +66,7 @@ fn motions_are_drawn_by_weight_and_times_evenly() {
         for ((count, share), [mean, square]) in counts.into_iter().zip(shares).zip(moments) {
             let n = f64::from(DRAWS);
             let std = (n * share * (1.0 - share)).sqrt();
-            assert!(
-                (f64::from(count) - n * share).abs() <= 4.0 * std,
-                "{count}"
-            );
+            assert!((f64::from(count) - n * share).abs() <= 4.0 * std, "{count}");
             if count > 0 {
                 let count = f64::from(count);
                 assert!((mean / count - 0.5).abs() < 4.0 / (12.0 * count).sqrt());
@@ -173,7 +176,10 @@ fn what_makes_no_library_is_said() {
 
     let other = Arc::new(punching_box());
     let error = MotionLibrary::of(&clips, &roles, &other).expect_err("refused");
-    assert!(matches!(error, MotionLibraryError::Retarget { .. }), "{error}");
+    assert!(
+        matches!(error, MotionLibraryError::Retarget { .. }),
+        "{error}"
+    );
     let library = MotionLibrary::of(&clips, &roles, &model).expect("three motions");
     let motions = library.motions().to_vec();
     let error = MotionLibrary::new(motions, &other).expect_err("refused");
@@ -186,7 +192,10 @@ fn what_makes_no_library_is_said() {
         &[f32::MAX; 3],
     ] {
         let error = library.clone().qacc_whitened(weights).expect_err("refused");
-        let named = matches!(error, MotionLibraryError::Weights { .. } | MotionLibraryError::Weight { .. });
+        let named = matches!(
+            error,
+            MotionLibraryError::Weights { .. } | MotionLibraryError::Weight { .. }
+        );
         assert!(named, "{weights:?}: {error}");
     }
 }

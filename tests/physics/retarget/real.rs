@@ -1,13 +1,13 @@
 //! Real recordings, where there are some: all of them, of seven skeletons.
 
 use super::{Bodies, LEG, UPRIGHT, max_speed, percentile};
-use footwork::physics::humanoid::humanoid;
-use footwork::physics::motion_library::MotionLibrary;
-use footwork::physics::retarget::retarget;
 use footwork::motion::bvh;
 use footwork::motion::import::{ImportOptions, import};
 use footwork::motion::roles::Roles;
 use footwork::motion::units;
+use footwork::physics::humanoid::humanoid;
+use footwork::physics::motion_library::MotionLibrary;
+use footwork::physics::retarget::retarget;
 use glam::Vec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};

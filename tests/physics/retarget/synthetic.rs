@@ -1,6 +1,9 @@
 //! What holds for any recording, seen in one that nobody made.
 
-use super::{Bodies, LEG, UPRIGHT, max_speed, humanoid_and, percentile, performed};
+use super::{Bodies, LEG, UPRIGHT, humanoid_and, max_speed, percentile, performed};
+use footwork::motion::clip::Clip;
+use footwork::motion::mirror::mirror;
+use footwork::motion::units;
 use footwork::physics::drive::rotation_vector;
 use footwork::physics::humanoid::{humanoid, punching_box};
 use footwork::physics::integrate::drift;
@@ -8,9 +11,6 @@ use footwork::physics::kinematics::quaternion;
 use footwork::physics::model::{JointKind, Model};
 use footwork::physics::motion_clip::pd_targets;
 use footwork::physics::retarget::{RetargetError, retarget};
-use footwork::motion::clip::Clip;
-use footwork::motion::mirror::mirror;
-use footwork::motion::units;
 use glam::{Quat, Vec3};
 
 /// Two frames of the performer's skeleton in a T-pose.
@@ -81,7 +81,10 @@ fn joints_axes_make_no_difference() {
     for frame in 0..one.frames {
         let [one, other] = [&one, &other].map(|motion| Bodies::of(&model, motion.q(frame)));
         for (a, b) in one.poses.iter().zip(&other.poses) {
-            assert!(a.position.distance(b.position) < 2e-3, "{frame}: {a:?} {b:?}");
+            assert!(
+                a.position.distance(b.position) < 2e-3,
+                "{frame}: {a:?} {b:?}"
+            );
             assert!(
                 a.rotation.dot(b.rotation).abs() > 1.0 - 1e-4,
                 "{frame}: {a:?} {b:?}"
@@ -136,8 +139,17 @@ fn a_mirrored_clip_gives_a_mirrored_body() {
             };
             let (one, other) = (bodies.pose(&body.name), seen.pose(&other));
             let position = other.position * Vec3::new(1.0, -1.0, 1.0);
-            let rotation = Quat::from_xyzw(-other.rotation.x, other.rotation.y, -other.rotation.z, other.rotation.w);
-            assert!(one.position.distance(position) < 1e-3, "{frame}, {}", body.name);
+            let rotation = Quat::from_xyzw(
+                -other.rotation.x,
+                other.rotation.y,
+                -other.rotation.z,
+                other.rotation.w,
+            );
+            assert!(
+                one.position.distance(position) < 1e-3,
+                "{frame}, {}",
+                body.name
+            );
             assert!(
                 one.rotation.dot(rotation).abs() > 1.0 - 1e-5,
                 "{frame}, {}",
@@ -244,7 +256,11 @@ fn drives_targets_are_what_the_joints_do() {
             JointKind::Hinge => assert_eq!(wanted[0], q[0]),
             _ => {
                 let rotation = Quat::from_scaled_axis(Vec3::from_slice(wanted));
-                assert!(rotation.dot(quaternion(q)).abs() > 1.0 - 1e-6, "{}", joint.name);
+                assert!(
+                    rotation.dot(quaternion(q)).abs() > 1.0 - 1e-6,
+                    "{}",
+                    joint.name
+                );
             }
         }
     }
@@ -261,7 +277,10 @@ fn what_cannot_be_done_is_said() {
     let mut short = clip.clone();
     short.positions.truncate(1);
     let error = refused(&short, &humanoid());
-    assert!(matches!(error, RetargetError::Short { frames: 1, .. }), "{error}");
+    assert!(
+        matches!(error, RetargetError::Short { frames: 1, .. }),
+        "{error}"
+    );
 
     let mut kneeless = clip.clone();
     let knee = kneeless.skeleton.parents[roles.left_foot].expect("a knee");

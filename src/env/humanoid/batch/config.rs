@@ -67,6 +67,7 @@ impl SimulatorBatchConfig {
     pub fn random_targets(&self, std: f32, step_counter: u32) -> random_targets::Params {
         random_targets::Params {
             envs: self.envs as u32,
+            driven: self.model.nu() as u32,
             action_std: std,
             seed: self.seed,
             step_counter,
@@ -77,6 +78,7 @@ impl SimulatorBatchConfig {
     pub fn reset_worlds(&self) -> reset_worlds::Params {
         reset_worlds::Params {
             envs: self.envs as u32,
+            max_contacts: self.options.max_contacts as u32,
             max_speed: MAX_SPEED,
         }
     }

@@ -111,7 +111,6 @@ impl GpuSimulatorBatch {
     fn launch_dynamics(&self, kinematics_only: bool) {
         smooth_dynamics::launch(
             &self.gpu,
-            self.config.model.trees.len(),
             &self.model_table,
             &self.state,
             &self.targets,
@@ -121,6 +120,7 @@ impl GpuSimulatorBatch {
             &smooth_dynamics::Params {
                 envs: self.config.envs as u32,
                 dt: self.config.options.dt,
+                trees: self.config.model.trees.len() as u32,
                 kinematics_only: u32::from(kinematics_only),
             },
         );
@@ -145,7 +145,6 @@ impl GpuSimulatorBatch {
     fn make_constraints(&self, _: bool) {
         make_constraints::launch(
             &self.gpu,
-            make_constraints::row_groups(&self.config.model, self.config.options.max_contacts),
             &self.model_table,
             &self.state,
             &self.dynamics,
@@ -157,6 +156,10 @@ impl GpuSimulatorBatch {
             &make_constraints::Params {
                 envs: self.config.envs as u32,
                 dt: self.config.options.dt,
+                row_groups: make_constraints::row_groups(
+                    &self.config.model,
+                    self.config.options.max_contacts,
+                ),
             },
         );
     }
@@ -226,8 +229,7 @@ fn cold_start(max_contacts: usize, joints: usize, envs: usize) -> Vec<u32> {
 impl SimulatorBatch for GpuSimulatorBatch {
     fn draw_targets(&mut self, std: f32) {
         let params = self.config.random_targets(std, self.step_counter);
-        let driven = self.config.model.nu();
-        random_targets::launch(&self.gpu, driven, &self.targets, &params);
+        random_targets::launch(&self.gpu, &self.targets, &params);
     }
 
     fn set_targets(&mut self, targets: &[f32]) {

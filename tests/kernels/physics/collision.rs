@@ -1,20 +1,19 @@
-//! Oracle: the twin, which `tests/body/collide.rs` holds against MuJoCo.
-//! Bar: the same contacts by the same keys; distances within 1e-5 m, places within 1e-4 m and directions within
+//! Oracle: the twin, which `tests/physics/collide.rs` holds against MuJoCo.
+//! Bar: the same contacts by the same ids; distances within 1e-5 m, positions within 1e-4 m and directions within
 //! 1e-3, as few digits decide them where an axis all but meets another, or an edge. Rounding may decide for one
 //! world in a hundred whether, or with which edge, two shapes touch.
 
 use crate::checked;
 use crate::inputs::{Draw, POISON, POISON_WHOLE, SIZES, gpu};
 use bytemuck::cast_slice;
-use footwork::physics::mjcf::ordered;
-use footwork::physics::model::{Body, Geom, Model, GeomShape};
-use footwork::physics::simulator::SolverOptions;
-use footwork::physics::model_table::tables;
-use footwork::gpu::kernel::groups;
-use footwork::gpu::{Buffer, shader};
-use footwork::kernels::physics::smooth_dynamics::POSE_DIM;
-use footwork::kernels::physics::make_constraints::CONTACT_DIM;
+use footwork::gpu::{Buffer, groups, shader};
 use footwork::kernels::physics::collision::{self, geoms};
+use footwork::kernels::physics::make_constraints::CONTACT_DIM;
+use footwork::kernels::physics::model_table::model_table;
+use footwork::kernels::physics::smooth_dynamics::POSE_DIM;
+use footwork::physics::mjcf::ordered;
+use footwork::physics::model::{Body, Geom, GeomShape, Model};
+use footwork::physics::simulator::SolverOptions;
 use glam::{Quat, Vec3};
 
 struct Case {
@@ -31,11 +30,11 @@ struct Found {
 }
 
 /// Geoms that the shader has room for.
-const GEOMS_MOST: usize = shader::collision::constants::GEOMS_MOST as usize;
+const GEOMS_MOST: usize = shader::collision::constants::GEOM_BOUND as usize;
 
 impl Case {
-    fn tables(&self) -> Vec<u32> {
-        tables(&self.model, &SolverOptions::fast(&self.model)).expect("it fits")
+    fn table(&self) -> Vec<u32> {
+        model_table(&self.model, &SolverOptions::fast(&self.model)).expect("it fits")
     }
 
     /// Every geom on a body of its own, but for the first, which stands still.
@@ -58,7 +57,7 @@ impl Case {
         for env in 0..envs {
             for body in 0..bodies {
                 let (position, rotation) = pose();
-                let numbers = position.to_array().into_iter().chain(turn.to_array());
+                let numbers = position.to_array().into_iter().chain(rotation.to_array());
                 for (field, number) in numbers.enumerate() {
                     poses[(body * POSE_DIM + field) * envs + env] = number;
                 }
@@ -104,7 +103,7 @@ impl Case {
     fn launch(&self) -> Found {
         let (gpu, empty) = (gpu(), self.poisoned());
         let geoms = Buffer::from_slice(&gpu, &geoms(&self.model));
-        let pairs = Buffer::from_slice(&gpu, &self.tables());
+        let pairs = Buffer::from_slice(&gpu, &self.table());
         let poses = Buffer::from_slice(&gpu, &self.poses);
         let contacts = Buffer::from_slice(&gpu, &empty.contacts);
         let contact_ids = Buffer::from_slice(&gpu, &empty.contact_ids);
@@ -127,7 +126,7 @@ impl Case {
     }
 
     fn checked(&self) -> Found {
-        let (empty, geoms, pairs) = (self.poisoned(), geoms(&self.model), self.tables());
+        let (empty, geoms, pairs) = (self.poisoned(), geoms(&self.model), self.table());
         let buffers: [&[u8]; 6] = [
             cast_slice(&geoms),
             cast_slice(&pairs),
@@ -156,7 +155,7 @@ impl Case {
             assert!(off <= differing, "{form}: contacts differ in {off} worlds");
             for env in 0..self.params.envs as usize {
                 if self.same_keys(env, &found, &twin) {
-                    self.judge(&format!("{form}, world {env}"), env, &found, &twin);
+                    self.compare(&format!("{form}, world {env}"), env, &found, &twin);
                 }
             }
         }
@@ -173,10 +172,11 @@ impl Case {
                 .copied()
                 .collect::<Vec<_>>()
         };
-        column(&found.contact_ids) == column(&twin.contact_ids) && column(&found.counts) == column(&twin.counts)
+        column(&found.contact_ids) == column(&twin.contact_ids)
+            && column(&found.counts) == column(&twin.counts)
     }
 
-    fn judge(&self, what: &str, env: usize, found: &Found, twin: &Found) {
+    fn compare(&self, what: &str, env: usize, found: &Found, twin: &Found) {
         let envs = self.params.envs as usize;
         for slot in 0..self.params.max_contacts as usize {
             for field in 0..CONTACT_DIM {
@@ -197,20 +197,20 @@ impl Case {
     }
 }
 
-fn geom((index, (shape, place, turn)): (usize, (GeomShape, Vec3, Quat))) -> Geom {
+fn geom((index, (shape, position, rotation)): (usize, (GeomShape, Vec3, Quat))) -> Geom {
     Geom {
         name: String::new(),
         body: index.checked_sub(1),
         shape,
-        place,
-        turn,
+        position,
+        rotation,
         friction: 1.0,
         frictionless: false,
-        softness: Default::default(),
+        solver_params: Default::default(),
     }
 }
 
-fn turn(draw: &mut Draw) -> Quat {
+fn rotation(draw: &mut Draw) -> Quat {
     let [x, y, z, w] = std::array::from_fn(|_| draw.normal());
     Quat::from_xyzw(x, y, z, w).normalize()
 }
@@ -226,7 +226,11 @@ fn size(draw: &mut Draw) -> f32 {
 
 /// A plane, then as many of each other shape.
 fn shapes(draw: &mut Draw, each: usize) -> Vec<(GeomShape, Vec3, Quat)> {
-    let mut geoms = vec![(GeomShape::Plane, Vec3::NEG_Z * 0.5, Quat::from_rotation_x(0.3))];
+    let mut geoms = vec![(
+        GeomShape::Plane,
+        Vec3::NEG_Z * 0.5,
+        Quat::from_rotation_x(0.3),
+    )];
     for index in 0..3 * each {
         let shape = match index / each {
             0 => GeomShape::Sphere { radius: size(draw) },
@@ -238,7 +242,7 @@ fn shapes(draw: &mut Draw, each: usize) -> Vec<(GeomShape, Vec3, Quat)> {
                 half: Vec3::from_array(std::array::from_fn(|_| size(draw))),
             },
         };
-        geoms.push((shape, vector(draw, 0.2), turn(draw)));
+        geoms.push((shape, vector(draw, 0.2), rotation(draw)));
     }
     geoms
 }
@@ -246,7 +250,7 @@ fn shapes(draw: &mut Draw, each: usize) -> Vec<(GeomShape, Vec3, Quat)> {
 fn agrees_anywhere(envs: usize, max_contacts: usize) {
     let mut draw = Draw::new((envs + max_contacts) as u32);
     let geoms = shapes(&mut draw, 5);
-    let mut pose = || (vector(&mut draw, 0.6), turn(&mut draw));
+    let mut pose = || (vector(&mut draw, 0.6), rotation(&mut draw));
     let found = Case::new(geoms, max_contacts, envs, &mut pose).agrees(envs / 100);
     assert!(found > envs, "{found} contacts in {envs} worlds");
 }
@@ -270,8 +274,16 @@ fn agrees_with_the_twin_with_few_slots_and_many() {
 fn agrees_with_the_twin_where_all_is_aligned() {
     let geoms = [
         (GeomShape::Plane, Vec3::NEG_Z, Quat::IDENTITY),
-        (GeomShape::Sphere { radius: 0.3125 }, Vec3::ZERO, Quat::IDENTITY),
-        (GeomShape::Sphere { radius: 0.1875 }, Vec3::ZERO, Quat::IDENTITY),
+        (
+            GeomShape::Sphere { radius: 0.3125 },
+            Vec3::ZERO,
+            Quat::IDENTITY,
+        ),
+        (
+            GeomShape::Sphere { radius: 0.1875 },
+            Vec3::ZERO,
+            Quat::IDENTITY,
+        ),
         (
             GeomShape::Capsule {
                 radius: 0.3125,
@@ -304,8 +316,8 @@ fn agrees_with_the_twin_where_all_is_aligned() {
         ),
     ];
     let mut draw = Draw::new(5);
-    let mut place = || std::array::from_fn(|_| draw.below(7) as f32 * 0.25 - 0.75);
-    let mut pose = || (Vec3::from_array(place()), Quat::IDENTITY);
+    let mut position = || std::array::from_fn(|_| draw.below(7) as f32 * 0.25 - 0.75);
+    let mut pose = || (Vec3::from_array(position()), Quat::IDENTITY);
     let found = Case::new(geoms.to_vec(), 64, 1000, &mut pose).agrees(0);
     assert!(found > 5000, "{found} contacts");
 }
@@ -323,6 +335,6 @@ fn as_many_geoms_as_there_is_room_for() {
     let mut draw = Draw::new(2);
     let geoms = shapes(&mut draw, GEOMS_MOST / 3);
     assert_eq!(geoms.len(), GEOMS_MOST);
-    let mut pose = || (vector(&mut draw, 1.5), turn(&mut draw));
+    let mut pose = || (vector(&mut draw, 1.5), rotation(&mut draw));
     assert!(Case::new(geoms, 200, 5, &mut pose).agrees(0) > 100);
 }

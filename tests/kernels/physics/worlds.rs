@@ -1,30 +1,31 @@
 //! Batches of worlds on the host, and what their kernels are compared by.
 
-pub(super) use crate::checked;
-pub(super) use crate::inputs::{Draw, POISON, POISON_WHOLE, gpu};
-pub(super) use bytemuck::{Pod, cast_slice};
-pub(super) use footwork::physics::mjcf;
-pub(super) use footwork::physics::model::{JointKind, Model};
-pub(super) use footwork::physics::simulator::{Simulator, SolverOptions, SimulatorState};
-pub(super) use footwork::physics::scenes;
-pub(super) use footwork::physics::model_table::tables;
-pub(super) use footwork::gpu::kernel::groups;
-pub(super) use footwork::gpu::{Buffer, Gpu, shader};
-pub(super) use footwork::kernels::physics::smooth_dynamics::{self, POSE_DIM, DynamicsLayout};
-pub(super) use footwork::kernels::physics::strided::gather;
+pub(super) use crate::inputs::{POISON, same};
 pub(super) use footwork::kernels::physics::make_constraints::{self, CONSTRAINT_DIM, CONTACT_DIM};
-pub(super) use footwork::kernels::physics::{contact_forces, collision, random_targets, proprioception, reset_worlds, solve_and_integrate};
-pub(super) use glam::{Quat, Vec3};
-pub(super) use std::path::Path;
-pub(super) use std::sync::Arc;
+pub(super) use footwork::kernels::physics::smooth_dynamics::{self, DynamicsLayout, POSE_DIM};
+pub(super) use footwork::kernels::physics::solve_and_integrate::{self, warm_start_dim};
+pub(super) use footwork::kernels::physics::{
+    collision, contact_forces, proprioception, random_targets, reset_worlds,
+};
+pub(super) use footwork::physics::scenes;
+
+use crate::inputs::{Draw, POISON_WHOLE};
+use footwork::kernels::physics::model_table::model_table;
+use footwork::kernels::physics::strided::gather;
+use footwork::physics::mjcf;
+use footwork::physics::model::{JointKind, Model};
+use footwork::physics::simulator::{Simulator, SimulatorState, SolverOptions};
+use glam::{Quat, Vec3};
+use std::path::Path;
+use std::sync::Arc;
 
 /// All buffers of a batch, on the host.
 #[derive(Clone)]
 pub struct Worlds {
     pub model: Arc<Model>,
-    pub settings: SolverOptions,
+    pub options: SolverOptions,
     pub envs: usize,
-    pub tables: Vec<u32>,
+    pub model_table: Vec<u32>,
     pub force_pairs: Vec<u32>,
     pub state: Vec<f32>,
     pub targets: Vec<f32>,
@@ -44,7 +45,7 @@ pub struct Worlds {
 /// A random state: characters in any attitude near the ground, some joints past their ranges.
 pub fn random_state(model: &Model, draw: &mut Draw) -> SimulatorState {
     let mut state = SimulatorState::new(model);
-    let turn = |draw: &mut Draw, most: f32| {
+    let rotation = |draw: &mut Draw, most: f32| {
         let axis = Vec3::new(draw.normal(), draw.normal(), draw.normal()).normalize();
         let [x, y, z, w] = Quat::from_axis_angle(axis, draw.within(most)).to_array();
         [w, x, y, z]
@@ -56,9 +57,9 @@ pub fn random_state(model: &Model, draw: &mut Draw) -> SimulatorState {
                 q[0] += draw.within(0.3);
                 q[1] += draw.within(0.3);
                 q[2] = 0.5 + draw.within(0.4);
-                q[3..7].copy_from_slice(&turn(draw, 3.0));
+                q[3..7].copy_from_slice(&rotation(draw, 3.0));
             }
-            JointKind::Ball => q[..4].copy_from_slice(&turn(draw, 1.5)),
+            JointKind::Ball => q[..4].copy_from_slice(&rotation(draw, 1.5)),
             JointKind::Hinge => {
                 let [low, high] = joint.range.unwrap_or([-1.0, 1.0]);
                 q[0] = 0.5 * (low + high) + draw.within(0.55 * (high - low));
@@ -74,8 +75,9 @@ pub fn random_state(model: &Model, draw: &mut Draw) -> SimulatorState {
 impl Worlds {
     pub fn new(model: Model, envs: usize, seed: u32) -> Worlds {
         let model = Arc::new(model);
-        let settings = SolverOptions::fast(&model);
-        let (max_contacts, joints, bodies) = (settings.max_contacts, model.joints.len(), model.bodies.len());
+        let options = SolverOptions::fast(&model);
+        let (max_contacts, joints) = (options.max_contacts, model.joints.len());
+        let bodies = model.bodies.len();
         let quads = model.dofs.len().div_ceil(4);
         let mut draw = Draw::new(seed);
         let mut state = vec![0.0; (model.nq() + model.nv()) * envs];
@@ -91,22 +93,22 @@ impl Worlds {
         let force_pairs: Vec<u32> = vec![2, 0, 1, 2, bodies as u32 - 1];
         let rows = make_constraints::rows(&model, max_contacts) * quads * 4;
         let poison = |fields: usize| vec![POISON; fields * envs];
-        let targets = draw.normals(model.driven() * envs);
+        let targets = draw.normals(model.nu() * envs);
         let mut external_forces = vec![0.0; 6 * bodies * envs];
-        for push in external_forces.iter_mut().step_by(7) {
-            *push = draw.within(50.0);
+        for force in external_forces.iter_mut().step_by(7) {
+            *force = draw.within(50.0);
         }
-        let mut warm_start = vec![0; solve_and_integrate::warm_start(max_contacts, joints) * envs];
+        let mut warm_start = vec![0; warm_start_dim(max_contacts, joints) * envs];
         warm_start[..max_contacts * envs].fill(solve_and_integrate::NO_CONTACT);
         let mut worlds = Worlds {
-            tables: tables(&model, &settings).expect("it fits"),
+            model_table: model_table(&model, &options).expect("it fits"),
             forces: poison(3 * (bodies + force_pairs.len() / 2)),
             force_pairs,
             state,
             targets,
             external_forces,
             poses: poison(POSE_DIM * bodies),
-            dynamics: poison(DynamicsLayout::of(&model).len),
+            dynamics: poison(DynamicsLayout::new(&model).len),
             contacts: poison(CONTACT_DIM * max_contacts),
             contact_ids: vec![POISON_WHOLE; max_contacts * envs],
             counts: vec![POISON_WHOLE; 2 * envs],
@@ -115,7 +117,7 @@ impl Worlds {
             warm_start,
             counters: vec![0; contact_forces::COUNTERS * envs],
             envs,
-            settings,
+            options,
             model,
         };
         worlds.step();
@@ -125,27 +127,29 @@ impl Worlds {
         worlds.contacts.fill(POISON);
         worlds.rows.fill(POISON);
         worlds.constraints.fill(POISON);
-        worlds.articulate();
-        worlds.contact();
-        worlds.constrain();
+        worlds.smooth_dynamics();
+        worlds.collision();
+        worlds.make_constraints();
         worlds
     }
 
-    pub fn physics(&self) -> Simulator {
-        Simulator::new(self.model.clone(), self.settings)
+    pub fn simulator(&self) -> Simulator {
+        Simulator::new(self.model.clone(), self.options)
     }
 
-    pub fn articulate_params(&self) -> smooth_dynamics::Params {
+    pub fn smooth_dynamics_params(&self) -> smooth_dynamics::Params {
         smooth_dynamics::Params {
             envs: self.envs as u32,
-            dt: self.settings.dt,
+            dt: self.options.dt,
+            trees: self.model.trees.len() as u32,
+            kinematics_only: 0,
         }
     }
 
-    pub fn articulate(&mut self) {
-        let params = self.articulate_params();
+    pub fn smooth_dynamics(&mut self) {
+        let params = self.smooth_dynamics_params();
         smooth_dynamics::twin(
-            &mut self.physics(),
+            &mut self.simulator(),
             &self.state,
             &self.targets,
             &self.external_forces,
@@ -155,7 +159,7 @@ impl Worlds {
         );
     }
 
-    pub fn contact(&mut self) {
+    pub fn collision(&mut self) {
         collision::twin(
             &self.model,
             &self.poses,
@@ -164,22 +168,23 @@ impl Worlds {
             &mut self.counts,
             &collision::Params {
                 envs: self.envs as u32,
-                max_contacts: self.settings.max_contacts as u32,
+                max_contacts: self.options.max_contacts as u32,
             },
         );
     }
 
-    pub fn constrain_params(&self) -> make_constraints::Params {
+    pub fn make_constraints_params(&self) -> make_constraints::Params {
         make_constraints::Params {
             envs: self.envs as u32,
-            dt: self.settings.dt,
+            dt: self.options.dt,
+            row_groups: make_constraints::row_groups(&self.model, self.options.max_contacts),
         }
     }
 
-    pub fn constrain(&mut self) {
-        let params = self.constrain_params();
+    pub fn make_constraints(&mut self) {
+        let params = self.make_constraints_params();
         make_constraints::twin(
-            &mut self.physics(),
+            &mut self.simulator(),
             &self.state,
             &self.dynamics,
             &self.contacts,
@@ -191,17 +196,17 @@ impl Worlds {
         );
     }
 
-    pub fn solve_params(&self) -> solve_and_integrate::Params {
+    pub fn solve_and_integrate_params(&self) -> solve_and_integrate::Params {
         solve_and_integrate::Params {
             envs: self.envs as u32,
-            dt: self.settings.dt,
+            dt: self.options.dt,
         }
     }
 
-    pub fn solve(&mut self) {
-        let params = self.solve_params();
+    pub fn solve_and_integrate(&mut self) {
+        let params = self.solve_and_integrate_params();
         solve_and_integrate::twin(
-            &mut self.physics(),
+            &mut self.simulator(),
             &mut self.state,
             &self.dynamics,
             &self.rows,
@@ -214,18 +219,18 @@ impl Worlds {
     }
 
     pub fn step(&mut self) {
-        self.articulate();
-        self.contact();
-        self.constrain();
-        self.solve();
+        self.smooth_dynamics();
+        self.collision();
+        self.make_constraints();
+        self.solve_and_integrate();
     }
 }
 
 pub fn scenes() -> [(&'static str, Model, usize); 4] {
     [
-        ("one", scenes::one(), 65),
-        ("two", scenes::two(), 9),
-        ("punching", scenes::punching(), 9),
+        ("humanoid", scenes::humanoid(), 65),
+        ("boxing", scenes::boxing_match(), 9),
+        ("box", scenes::humanoid_and_box(), 9),
         ("odd", mjcf::parse(ODD, Path::new("odd.xml")).unwrap(), 9),
     ]
 }
@@ -256,10 +261,6 @@ pub const ODD: &str = r#"<mujoco model="odd">
   </worldbody>
   <actuator><position name="arm" joint="arm" kp="50" kv="5" forcerange="-10 10"/></actuator>
 </mujoco>"#;
-
-pub fn up<T: Pod>(gpu: &Gpu, values: &[T]) -> Buffer<T> {
-    Buffer::from_slice(gpu, values)
-}
 
 /// Compares fields `from..to` of `[fields][envs]`, an environment at a time.
 #[track_caller]
