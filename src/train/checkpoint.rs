@@ -70,9 +70,7 @@ pub enum CheckpointError {
         found: String,
         wanted: String,
     },
-    #[error(
-        "{path} is of environments with {found}, not with {wanted}: start another run"
-    )]
+    #[error("{path} is of environments with {found}, not with {wanted}: start another run")]
     Spec {
         path: PathBuf,
         found: String,

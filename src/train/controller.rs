@@ -2,7 +2,7 @@
 
 use crate::motion::RATE;
 use crate::motion::database::Database;
-use crate::motion::features::{TRAJECTORY_OFFSETS, POSE_DIM, TRAJECTORY_DIM};
+use crate::motion::features::{POSE_DIM, TRAJECTORY_DIM, TRAJECTORY_OFFSETS};
 use crate::nn::Policy;
 use anyhow::Result;
 

@@ -58,7 +58,9 @@ impl UpdateMetrics {
             policy_s: iteration.policy_s,
             env_s: iteration.env_s,
             learn_s: iteration.learn_s,
-            named: named.map(|(name, value)| (name.to_string(), value as f32)).collect(),
+            named: named
+                .map(|(name, value)| (name.to_string(), value as f32))
+                .collect(),
             ..UpdateMetrics::default()
         }
     }

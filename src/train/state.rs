@@ -53,7 +53,8 @@ impl TrainerState {
             steps: stats.sum("steps"),
             returns: stats.sum("returns"),
         });
-        let episodes = |recent: &[EpisodeSums]| recent.iter().map(|sums| sums.episodes).sum::<f64>();
+        let episodes =
+            |recent: &[EpisodeSums]| recent.iter().map(|sums| sums.episodes).sum::<f64>();
         while self.recent.len() > 1 && episodes(&self.recent[1..]) >= RECENT {
             self.recent.remove(0);
         }

@@ -6,11 +6,11 @@
 
 use super::config::{Config, ConfigError, Preset, TaskPreset};
 use super::evaluation::{EvalOptions, EvalReport, Evaluation};
+use super::locomotion::Locomotion;
 #[cfg(feature = "report")]
 use super::metrics::UpdateMetrics;
 #[cfg(feature = "report")]
 use super::run_dir::RunDir;
-use super::locomotion::Locomotion;
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::nn::{ActorCritic, Policy};

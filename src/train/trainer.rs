@@ -169,11 +169,17 @@ impl<'a> Loop<'a> {
     }
 
     fn level(&self) -> Option<u32> {
-        self.envs.curriculum.as_ref().map(|curriculum| curriculum.level())
+        self.envs
+            .curriculum
+            .as_ref()
+            .map(|curriculum| curriculum.level())
     }
 
     fn levels_passed(&self) -> Option<u32> {
-        self.envs.curriculum.as_ref().map(|curriculum| curriculum.passed)
+        self.envs
+            .curriculum
+            .as_ref()
+            .map(|curriculum| curriculum.passed)
     }
 
     /// Whether the wanted success is reached: on the fixed evaluation episodes, which are only run when
@@ -192,7 +198,9 @@ impl<'a> Loop<'a> {
     }
 
     fn evaluate(&self, episodes: usize) -> Result<Evaluation> {
-        self.training.task.evaluate(&self.learner.policy()?, episodes)
+        self.training
+            .task
+            .evaluate(&self.learner.policy()?, episodes)
     }
 
     /// Saves what this update has earned: periodic, milestone and best checkpoints.
