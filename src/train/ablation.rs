@@ -19,11 +19,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Runs of an ablation: the task, what to compare, and the choices that all variants share.
 pub struct Comparison<'a> {
+    /// The task.
     pub entry: &'a TaskEntry,
+    /// Its variants.
     pub ablation: &'a Ablation,
+    /// The choices that all variants share.
     pub base: &'a Config,
     /// The task with its data under those choices.
     pub task: &'a dyn Task,
+    /// Where the variants are trained.
     pub device: &'a Device,
     /// Folder of all runs.
     pub out: &'a Path,
@@ -31,9 +35,13 @@ pub struct Comparison<'a> {
 
 /// One variant's training from one seed.
 pub struct Outcome {
+    /// Name of the variant.
     pub variant: &'static str,
+    /// Seed of the training.
     pub seed: u32,
+    /// Its updates.
     pub rows: Vec<UpdateMetrics>,
+    /// What the evaluation episodes found at its end.
     pub evaluation: Evaluation,
 }
 

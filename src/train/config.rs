@@ -30,8 +30,11 @@ pub enum Preset {
 /// The resolved configuration of a run, saved in its folder as `config.toml`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Config {
+    /// What the choices began with.
     pub preset: Preset,
+    /// Where to train.
     pub device: Choice,
+    /// Seed of everything random.
     pub seed: u32,
     /// A BVH file or folder, or a database file; without it the synthetic performer's data.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -48,7 +51,9 @@ pub struct Config {
     pub evaluate_every: u64,
     /// Environment steps between two saved checkpoints.
     pub checkpoint_every: u64,
+    /// The task and its own choices.
     pub task: TaskConfig,
+    /// The choices of learning.
     pub ppo: Ppo,
 }
 
@@ -56,6 +61,7 @@ pub struct Config {
 pub struct TaskPreset {
     /// The table `[task]`, but for the name.
     pub settings: toml::Table,
+    /// The choices of learning.
     pub ppo: Ppo,
     /// Environment steps of a training.
     pub steps: u64,

@@ -24,6 +24,7 @@ impl Controller for Policy {
 
 /// Scripted motion matching: requests a straight trajectory to the target at one speed.
 pub struct Scripted<'a> {
+    /// Whose normalisation the requests are in.
     pub database: &'a Database,
     /// m/s
     pub speed: f32,

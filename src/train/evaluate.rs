@@ -26,6 +26,7 @@ const LOITER_STEPS: u32 = 25;
 /// What the evaluation of a controller found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LocomotionReport {
+    /// Episodes played.
     pub episodes: usize,
     /// Fraction of episodes that reached their target.
     pub success: f64,
@@ -114,7 +115,7 @@ pub fn hardest(
 /// Sums over episodes.
 #[derive(Default)]
 struct Found {
-    /// Of the successful episodes.
+    /// Times of the successful episodes, s, and their path ratios.
     times: Vec<f64>,
     ratios: Vec<f64>,
     walked: f64,

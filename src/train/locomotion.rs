@@ -28,7 +28,9 @@ const RATED: usize = 500;
 
 /// A motion-matching task with its motion.
 pub struct Locomotion {
+    /// The task with its choices.
     pub task: LocomotionTask,
+    /// The motion and its index.
     pub matcher: Arc<MotionMatcher>,
 }
 

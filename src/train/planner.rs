@@ -33,6 +33,7 @@ const ACTIONS: usize = SPEEDS.len() * (DIRECTIONS + 1) + 1;
 /// What the planner found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Planned {
+    /// Episodes planned.
     pub episodes: usize,
     /// Fraction that a plan takes to the target.
     pub success: f64,

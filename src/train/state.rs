@@ -29,9 +29,11 @@ struct Score {
 /// Means over the latest episodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RecentMeans {
+    /// Fraction of successes.
     pub success: f64,
     /// Steps.
     pub length: f64,
+    /// Sum of rewards.
     pub episode_return: f64,
 }
 

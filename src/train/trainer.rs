@@ -30,9 +30,13 @@ const NEAR: f64 = 0.15;
 /// What a training is of.
 #[derive(Clone, Copy)]
 pub struct Training<'a> {
+    /// The choices.
     pub config: &'a Config,
+    /// The task with its data.
     pub task: &'a dyn Task,
+    /// The run's folder.
     pub run: &'a RunDir,
+    /// Where to train.
     pub device: &'a Device,
 }
 

@@ -18,11 +18,14 @@ use std::sync::Arc;
 pub struct EpisodeTrajectory {
     /// Root on the ground after every step, `[x, z]`, m.
     pub points: Vec<[f32; 2]>,
+    /// Target on the ground, `[x, z]`, m.
     pub target: [f32; 2],
+    /// Whether the target was reached.
     pub reached: bool,
 }
 
 impl EpisodeTrajectory {
+    /// Length of the episode, s.
     pub fn seconds(&self) -> f32 {
         (self.points.len() - 1) as f32 * STEP_S
     }

@@ -16,6 +16,7 @@ use crate::train::task::{Ablation, Loaded, Measure, Task, TaskEntry, Variant};
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 
+/// The task in the registry.
 pub const ENTRY: TaskEntry = TaskEntry {
     name: "obstacles",
     about: "Reach a target among 100 moving obstacles",

@@ -15,6 +15,7 @@ use crate::train::task::{Loaded, Task, TaskEntry, Unsupported};
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 
+/// The task in the registry.
 pub const ENTRY: TaskEntry = TaskEntry {
     name: "plane",
     about: "Reach a target on an empty plane",

@@ -20,6 +20,7 @@ use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 use std::sync::Arc;
 
+/// The task in the registry.
 pub const ENTRY: TaskEntry = TaskEntry {
     name: "stand",
     about: "Keep a simulated body upright while it is pushed",
