@@ -89,7 +89,9 @@ fn learns_to_reach_targets_on_the_cpu() {
         steps: 150_000,
         ..preset("plane", Preset::Fast)
     };
-    let summary = place.train(&config, Choice::Cpu, "run").expect("a training");
+    let summary = place
+        .train(&config, Choice::Cpu, "run")
+        .expect("a training");
     assert!(summary.evaluation.success >= 0.95, "{summary:?}");
 }
 
@@ -172,7 +174,9 @@ fn learns_to_pass_the_first_level_among_obstacles() {
         steps: 300_000,
         ..preset("obstacles", Preset::Fast)
     };
-    let summary = place.train(&config, Choice::Cpu, "run").expect("a training");
+    let summary = place
+        .train(&config, Choice::Cpu, "run")
+        .expect("a training");
     assert!(summary.levels_passed > Some(0), "no level passed");
 }
 
@@ -194,7 +198,9 @@ fn one_update(task: &str) {
     let place = Place::new(1.0);
     let mut config = preset(task, Preset::Paper);
     (config.steps, config.ppo.epochs) = (config.batch(), 1);
-    let summary = place.train(&config, Choice::Cpu, "run").expect("a training");
+    let summary = place
+        .train(&config, Choice::Cpu, "run")
+        .expect("a training");
     assert_eq!(summary.stopped_by, "steps");
     let text = std::fs::read_to_string(place.path("run/metrics.jsonl")).expect("metrics");
     let row: serde_json::Value = serde_json::from_str(&text).expect("an update");
@@ -264,6 +270,8 @@ fn faster_scripts_arrive_sooner_and_an_untrained_policy_hardly_ever() {
     let place = Place::new(10.0);
     let mut config = small(512);
     config.ppo.learning_rate = 1e-9;
-    let summary = place.train(&config, Choice::Cpu, "run").expect("a training");
+    let summary = place
+        .train(&config, Choice::Cpu, "run")
+        .expect("a training");
     assert!(summary.evaluation.success < 0.5, "{summary:?}");
 }

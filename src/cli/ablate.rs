@@ -34,7 +34,12 @@ pub struct Ablate {
 /// Every ablation with the task it is of.
 fn all() -> impl Iterator<Item = (&'static TaskEntry, &'static Ablation)> {
     let tasks = REGISTRY.iter();
-    tasks.flat_map(|entry| entry.ablations.iter().map(move |ablation| (entry, ablation)))
+    tasks.flat_map(|entry| {
+        entry
+            .ablations
+            .iter()
+            .map(move |ablation| (entry, ablation))
+    })
 }
 
 fn names() -> PossibleValuesParser {

@@ -21,8 +21,8 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 use footwork::motion::error::MotionError;
 use footwork::train::config::ConfigError;
-pub use usage::Usage;
 use footwork::train::task::Unsupported;
+pub use usage::Usage;
 
 /// Trains character controllers: motion capture in, a policy that moves a full-body character out.
 #[derive(Parser)]

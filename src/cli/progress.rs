@@ -35,7 +35,6 @@ impl Progress {
             max_time_s: config.max_time_s,
         }
     }
-
 }
 
 impl Observer for Progress {
@@ -69,7 +68,6 @@ impl Observer for Progress {
             None => {}
         }
     }
-
 }
 
 impl Drop for Progress {

@@ -59,7 +59,11 @@ impl Run {
     #[cfg(feature = "viewer")]
     pub fn locomotion(&self, wanted: &str) -> Result<&Locomotion, Unsupported> {
         let name = &self.config.task.name;
-        let why = || Unsupported(format!("`{wanted}` shows motion matching, which `{name}` is not of"));
+        let why = || {
+            Unsupported(format!(
+                "`{wanted}` shows motion matching, which `{name}` is not of"
+            ))
+        };
         self.task.locomotion().ok_or_else(why)
     }
 }

@@ -128,7 +128,10 @@ impl Train {
         let opened = Opened::new(entry, &mut config)?;
         #[cfg(feature = "viewer")]
         if self.watch && opened.task.locomotion().is_none() {
-            let why = format!("--watch shows motion matching, which `{}` is not of", entry.name);
+            let why = format!(
+                "--watch shows motion matching, which `{}` is not of",
+                entry.name
+            );
             return Err(Unsupported(why).into());
         }
         let from = match &resumed {

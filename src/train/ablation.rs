@@ -19,11 +19,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Runs of an ablation: the task, what to compare, and the choices that all variants share.
 pub struct Comparison<'a> {
+    /// The task.
     pub entry: &'a TaskEntry,
+    /// Its variants.
     pub ablation: &'a Ablation,
+    /// The choices that all variants share.
     pub base: &'a Config,
     /// The task with its data under those choices.
     pub task: &'a dyn Task,
+    /// Where the variants are trained.
     pub device: &'a Device,
     /// Folder of all runs.
     pub out: &'a Path,
@@ -31,9 +35,13 @@ pub struct Comparison<'a> {
 
 /// One variant's training from one seed.
 pub struct Outcome {
+    /// Name of the variant.
     pub variant: &'static str,
+    /// Seed of the training.
     pub seed: u32,
+    /// Its updates.
     pub rows: Vec<UpdateMetrics>,
+    /// What the evaluation episodes found at its end.
     pub evaluation: Evaluation,
 }
 
@@ -135,7 +143,9 @@ impl Comparison<'_> {
         };
         let path = run.path().display();
         if found != *config {
-            bail!("{path} holds a run of another configuration: give another --out, or what that one was given");
+            bail!(
+                "{path} holds a run of another configuration: give another --out, or what that one was given"
+            );
         }
         if !run.checkpoint("last").exists() {
             return Ok(None);
@@ -143,7 +153,9 @@ impl Comparison<'_> {
         let checkpoint = Checkpoint::load_for(&run.last()?, self.entry.name, spec, fingerprint)?;
         let done = checkpoint.header.steps;
         if done >= config.steps + config.batch() {
-            bail!("{path} has done {done} steps, more than are asked for: give --steps {done}, or another --out");
+            bail!(
+                "{path} has done {done} steps, more than are asked for: give --steps {done}, or another --out"
+            );
         }
         Ok(Some(checkpoint))
     }
@@ -170,9 +182,14 @@ impl Comparison<'_> {
         let methods = methods.map(|(colour, variant)| Method {
             name: variant.name.to_string(),
             colour,
-            seeds: of(variant.name).map(|outcome| points(&outcome.rows)).collect(),
+            seeds: of(variant.name)
+                .map(|outcome| points(&outcome.rows))
+                .collect(),
         });
-        Ok(draw(&self.out.join("ablation.png"), &methods.collect::<Vec<_>>())?)
+        Ok(draw(
+            &self.out.join("ablation.png"),
+            &methods.collect::<Vec<_>>(),
+        )?)
     }
 
     /// A table of the variants: means over the seeds.
@@ -181,12 +198,16 @@ impl Comparison<'_> {
         let mut titles = vec!["variant", "seeds", "success %", "of each seed"];
         titles.extend(measures.iter().map(|measure| measure.title));
         let row = |variant: &Variant| {
-            let found = outcomes.iter().filter(|outcome| outcome.variant == variant.name);
+            let found = outcomes
+                .iter()
+                .filter(|outcome| outcome.variant == variant.name);
             let found: Vec<&Evaluation> = found.map(|outcome| &outcome.evaluation).collect();
             let mean = |of: &dyn Fn(&Evaluation) -> f64| {
                 found.iter().map(|one| of(one)).sum::<f64>() / found.len().max(1) as f64
             };
-            let each = found.iter().map(|one| format!("{:.1}", 100.0 * one.success));
+            let each = found
+                .iter()
+                .map(|one| format!("{:.1}", 100.0 * one.success));
             let mut row = vec![
                 variant.name.to_string(),
                 found.len().to_string(),
@@ -206,7 +227,9 @@ impl Comparison<'_> {
     /// The evaluations as CSV.
     fn evaluations(&self, outcomes: &[Outcome]) -> String {
         let names = self.ablation.measures.iter().map(|measure| measure.name);
-        let mut text = csv(["variant", "seed", "episodes", "success"].into_iter().chain(names.clone()));
+        let mut text = csv(["variant", "seed", "episodes", "success"]
+            .into_iter()
+            .chain(names.clone()));
         for outcome in outcomes {
             let found = &outcome.evaluation;
             let first = [
@@ -224,7 +247,9 @@ impl Comparison<'_> {
     /// The updates as CSV.
     fn curves(&self, outcomes: &[Outcome]) -> String {
         let rates = self.ablation.rates;
-        let first = ["variant", "seed", "steps", "wall_s", "level", "episodes", "success"];
+        let first = [
+            "variant", "seed", "steps", "wall_s", "level", "episodes", "success",
+        ];
         let titles = first.iter().chain(rates).chain(&["return", "length"]);
         let mut text = csv(titles.copied());
         let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());

@@ -17,15 +17,16 @@ const FORMAT: Format = Format {
     version: 4,
 };
 
-/// Of what run a checkpoint is, and how far the run had come.
+/// The run that a checkpoint is of, and how far it had come.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// The program that wrote it.
     pub version: String,
     /// The task's name.
     pub task: String,
+    /// Dimensions of the environments.
     pub spec: EnvSpec,
-    /// Of the task's data: a policy is of no use with other data.
+    /// Fingerprint of the task's data: a policy is of no use with other data.
     pub fingerprint: u32,
     /// The resolved configuration, as in `config.toml`.
     pub config: String,
@@ -37,7 +38,9 @@ pub struct Header {
 
 /// A run at one moment.
 pub struct Checkpoint {
+    /// The section `run`.
     pub header: Header,
+    /// The section `policy`.
     pub policy: Policy,
     /// All but `run`.
     pub sections: Sections,
@@ -70,9 +73,7 @@ pub enum CheckpointError {
         found: String,
         wanted: String,
     },
-    #[error(
-        "{path} is of environments with {found}, not with {wanted}: start another run"
-    )]
+    #[error("{path} is of environments with {found}, not with {wanted}: start another run")]
     Spec {
         path: PathBuf,
         found: String,

@@ -30,8 +30,11 @@ pub enum Preset {
 /// The resolved configuration of a run, saved in its folder as `config.toml`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Config {
+    /// What the choices began with.
     pub preset: Preset,
+    /// Where to train.
     pub device: Choice,
+    /// Seed of everything random.
     pub seed: u32,
     /// A BVH file or folder, or a database file; without it the synthetic performer's data.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -48,7 +51,9 @@ pub struct Config {
     pub evaluate_every: u64,
     /// Environment steps between two saved checkpoints.
     pub checkpoint_every: u64,
+    /// The task and its own choices.
     pub task: TaskConfig,
+    /// The choices of learning.
     pub ppo: Ppo,
 }
 
@@ -56,6 +61,7 @@ pub struct Config {
 pub struct TaskPreset {
     /// The table `[task]`, but for the name.
     pub settings: toml::Table,
+    /// The choices of learning.
     pub ppo: Ppo,
     /// Environment steps of a training.
     pub steps: u64,
@@ -201,7 +207,9 @@ impl Config {
             problem,
         };
         if matches!(key, "preset" | "task.name") {
-            return Err(mistaken("it decides what all else begins with: give `--preset` or another TASK".into()));
+            return Err(mistaken(
+                "it decides what all else begins with: give `--preset` or another TASK".into(),
+            ));
         }
         let names = key.rsplit('.');
         let change = names.fold(value, |value, name| {
@@ -210,7 +218,9 @@ impl Config {
         let toml::Value::Table(changes) = change else {
             unreachable!("a key has a name")
         };
-        *self = self.changed(changes).map_err(|mistake| mistaken(mistake.problem))?;
+        *self = self
+            .changed(changes)
+            .map_err(|mistake| mistaken(mistake.problem))?;
         Ok(())
     }
 
@@ -382,7 +392,10 @@ fn overlay(
     for (key, value) in changes {
         let full = format!("{within}{key}");
         let put = match (table.get_mut(&key), value) {
-            (None, _) => Err(format!("unknown key `{full}`{}", nearest(&key, names.iter().map(String::as_str)))),
+            (None, _) => Err(format!(
+                "unknown key `{full}`{}",
+                nearest(&key, names.iter().map(String::as_str))
+            )),
             (Some(toml::Value::Table(inner)), toml::Value::Table(changes)) => {
                 overlay(inner, changes, &format!("{full}."), names)?;
                 Ok(())
@@ -427,7 +440,8 @@ fn names(table: &toml::Table, within: &str) -> Vec<String> {
 /// before them.
 pub(super) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let last = |name: &str| name.rfind('.').map_or(0, |dot| dot + 1);
-    let nearest = known.min_by_key(|known| strsim::damerau_levenshtein(name, &known[last(known)..]));
+    let nearest =
+        known.min_by_key(|known| strsim::damerau_levenshtein(name, &known[last(known)..]));
     nearest.map_or(String::new(), |known| format!(", did you mean `{known}`?"))
 }
 
@@ -441,15 +455,16 @@ struct Mistake {
 /// The first key whose values differ, or that only one table has.
 fn different(one: &toml::Table, other: &toml::Table, within: &str) -> Option<String> {
     let keys = one.keys().chain(other.keys());
-    keys.filter(|&key| one.get(key) != other.get(key)).find_map(|key| {
-        let full = format!("{within}{key}");
-        match (one.get(key), other.get(key)) {
-            (Some(toml::Value::Table(one)), Some(toml::Value::Table(other))) => {
-                different(one, other, &format!("{full}."))
+    keys.filter(|&key| one.get(key) != other.get(key))
+        .find_map(|key| {
+            let full = format!("{within}{key}");
+            match (one.get(key), other.get(key)) {
+                (Some(toml::Value::Table(one)), Some(toml::Value::Table(other))) => {
+                    different(one, other, &format!("{full}."))
+                }
+                _ => Some(full),
             }
-            _ => Some(full),
-        }
-    })
+        })
 }
 
 /// The line (from 1) of a TOML text that has a key, if the text is TOML and has it.

@@ -2,7 +2,7 @@
 
 use crate::motion::RATE;
 use crate::motion::database::Database;
-use crate::motion::features::{TRAJECTORY_OFFSETS, POSE_DIM, TRAJECTORY_DIM};
+use crate::motion::features::{POSE_DIM, TRAJECTORY_DIM, TRAJECTORY_OFFSETS};
 use crate::nn::Policy;
 use anyhow::Result;
 
@@ -24,6 +24,7 @@ impl Controller for Policy {
 
 /// Scripted motion matching: requests a straight trajectory to the target at one speed.
 pub struct Scripted<'a> {
+    /// Whose normalisation the requests are in.
     pub database: &'a Database,
     /// m/s
     pub speed: f32,

@@ -83,7 +83,9 @@ pub fn levels_json(levels: &[LocomotionReport]) -> serde_json::Value {
 ///
 /// # Errors
 /// A report has no JSON form.
-pub fn baseline_json(baseline: &[(f32, LocomotionReport)]) -> serde_json::Result<serde_json::Value> {
+pub fn baseline_json(
+    baseline: &[(f32, LocomotionReport)],
+) -> serde_json::Result<serde_json::Value> {
     let rows = baseline.iter().map(|(speed, report)| {
         let mut row = serde_json::to_value(report)?;
         row["asked_speed"] = serde_json::json!((f64::from(*speed) * 10.0).round() / 10.0);

@@ -2,12 +2,12 @@
 
 use super::controller::Controller;
 use super::evaluation::Evaluation;
-use crate::kernels::locomotion::locomotion_layout::state_f32;
-use crate::kernels::termination;
-use crate::kernels::rng::{random4, uniform01};
-use crate::matching::MotionMatcher;
 use crate::env::locomotion::cpu::CpuLocomotion;
 use crate::env::locomotion::{EnvConfig, LEVELS, LocomotionTask, STEP_S};
+use crate::kernels::locomotion::locomotion_layout::state_f32;
+use crate::kernels::rng::{random4, uniform01};
+use crate::kernels::termination;
+use crate::matching::MotionMatcher;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -26,6 +26,7 @@ const LOITER_STEPS: u32 = 25;
 /// What the evaluation of a controller found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LocomotionReport {
+    /// Episodes played.
     pub episodes: usize,
     /// Fraction of episodes that reached their target.
     pub success: f64,
@@ -61,7 +62,9 @@ impl LocomotionReport {
             ("mean_speed", self.mean_speed),
             ("episode_length_mean_s", self.episode_length_mean_s),
         ];
-        let delay = self.turn_delay_mean_s.map(|delay| ("turn_delay_mean_s", delay));
+        let delay = self
+            .turn_delay_mean_s
+            .map(|delay| ("turn_delay_mean_s", delay));
         Evaluation {
             episodes: self.episodes,
             success: self.success,
@@ -112,7 +115,7 @@ pub fn hardest(
 /// Sums over episodes.
 #[derive(Default)]
 struct Found {
-    /// Of the successful episodes.
+    /// Times of the successful episodes, s, and their path ratios.
     times: Vec<f64>,
     ratios: Vec<f64>,
     walked: f64,
@@ -206,7 +209,9 @@ impl Found {
         episode.phase = Phase::Done;
         if termination == termination::SUCCESS {
             let path = envs.field(state_f32::TRAVELLED, env);
-            let straight = envs.field(state_f32::X, env).hypot(envs.field(state_f32::Z, env));
+            let straight = envs
+                .field(state_f32::X, env)
+                .hypot(envs.field(state_f32::Z, env));
             self.times.push(f64::from(step as f32 * STEP_S));
             self.ratios.push(f64::from(path / straight));
             self.walked += f64::from(path);

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 /// What the fixed episodes of an evaluation found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Evaluation {
+    /// Episodes to play, or played.
     pub episodes: usize,
     /// Fraction of the episodes that succeeded.
     pub success: f64,
@@ -24,6 +25,7 @@ impl Evaluation {
 /// What `footwork eval` may be asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EvalOptions {
+    /// Episodes to play, or played.
     pub episodes: usize,
     /// A scripted controller beside the policy.
     pub baseline: bool,
@@ -35,6 +37,8 @@ pub struct EvalOptions {
 
 /// A report for people and one for programs.
 pub struct EvalReport {
+    /// For people.
     pub text: String,
+    /// For programs.
     pub json: serde_json::Value,
 }

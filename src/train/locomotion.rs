@@ -3,13 +3,13 @@
 use super::config::{Config, ConfigError, settings, table, within};
 use super::controller::{Controller, Scripted};
 use super::data;
+use super::eval_report::{baseline_json, comparison, motion_quality};
 use super::evaluate::{LocomotionReport, evaluate, hardest};
+use super::evaluation::{EvalOptions, EvalReport, Evaluation};
 use super::planner::plan;
 use super::rendered_frames::rendered_frames;
-use super::eval_report::{baseline_json, comparison, motion_quality};
-use super::evaluation::{EvalOptions, EvalReport, Evaluation};
-use crate::env::{EnvBatch, EnvSpec};
 use crate::env::locomotion::{EnvConfig, LEVELS, LocomotionTask};
+use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::matching::MotionMatcher;
 use crate::motion::normalise::Weights;
@@ -28,7 +28,9 @@ const RATED: usize = 500;
 
 /// A motion-matching task with its motion.
 pub struct Locomotion {
+    /// The task with its choices.
     pub task: LocomotionTask,
+    /// The motion and its index.
     pub matcher: Arc<MotionMatcher>,
 }
 
@@ -54,9 +56,24 @@ pub fn split<T: DeserializeOwned>(config: &Config) -> Result<(T, Weights), Confi
 }
 
 fn check_weights(weights: &Weights) -> Result<(), ConfigError> {
-    within("task.weights.foot_position", weights.foot_position, 0.0, 1e3)?;
-    within("task.weights.foot_velocity", weights.foot_velocity, 0.0, 1e3)?;
-    within("task.weights.root_velocity", weights.root_velocity, 0.0, 1e3)?;
+    within(
+        "task.weights.foot_position",
+        weights.foot_position,
+        0.0,
+        1e3,
+    )?;
+    within(
+        "task.weights.foot_velocity",
+        weights.foot_velocity,
+        0.0,
+        1e3,
+    )?;
+    within(
+        "task.weights.root_velocity",
+        weights.root_velocity,
+        0.0,
+        1e3,
+    )?;
     // Actions are divided by these.
     let (position, direction) = (weights.trajectory_position, weights.trajectory_direction);
     within("task.weights.trajectory_position", position, 1e-3, 1e3)?;
@@ -83,7 +100,11 @@ impl Locomotion {
     ///
     /// # Errors
     /// It cannot be read.
-    pub fn load(task: LocomotionTask, weights: Weights, config: &Config) -> Result<(Self, Vec<String>)> {
+    pub fn load(
+        task: LocomotionTask,
+        weights: Weights,
+        config: &Config,
+    ) -> Result<(Self, Vec<String>)> {
         let (matcher, mut notes) = data::load_matcher(config.data.as_deref(), weights)?;
         if weights != matcher.database.weights {
             let note = "the database was made with other weights than asked for; its own hold";
@@ -101,7 +122,10 @@ impl Locomotion {
 
     /// The motion in a few words.
     pub fn describe(&self) -> String {
-        let (minutes, candidates) = (self.matcher.database.minutes(), self.matcher.database.candidates.len());
+        let (minutes, candidates) = (
+            self.matcher.database.minutes(),
+            self.matcher.database.candidates.len(),
+        );
         format!("{minutes:.1} minutes of motion, {candidates} candidates")
     }
 
@@ -114,7 +138,10 @@ impl Locomotion {
             task: self.task,
             envs,
             seed,
-            level: self.task.curriculum().map_or(LEVELS - 1, |curriculum| curriculum.level()),
+            level: self
+                .task
+                .curriculum()
+                .map_or(LEVELS - 1, |curriculum| curriculum.level()),
         };
         config.open(device, &self.matcher)
     }
@@ -131,7 +158,11 @@ impl Locomotion {
     ///
     /// # Errors
     /// See [`Controller::act`].
-    pub fn levels(&self, controller: &dyn Controller, episodes: usize) -> Result<Vec<LocomotionReport>> {
+    pub fn levels(
+        &self,
+        controller: &dyn Controller,
+        episodes: usize,
+    ) -> Result<Vec<LocomotionReport>> {
         let levels = 0..LEVELS;
         levels
             .map(|level| evaluate(controller, &self.matcher, self.task, level, episodes))
@@ -143,7 +174,12 @@ impl Locomotion {
     ///
     /// # Errors
     /// See [`Controller::act`].
-    pub fn report(&self, policy: &Policy, trained: &LocomotionReport, wanted: &EvalOptions) -> Result<EvalReport> {
+    pub fn report(
+        &self,
+        policy: &Policy,
+        trained: &LocomotionReport,
+        wanted: &EvalOptions,
+    ) -> Result<EvalReport> {
         let mut json = serde_json::to_value(trained)?;
         let baseline = match wanted.baseline {
             true => self.baseline(wanted.episodes)?,
@@ -178,7 +214,10 @@ impl Locomotion {
         let database = &self.matcher.database;
         let speeds = SPEEDS.into_iter().map(|speed| {
             let scripted = Scripted { database, speed };
-            Ok((speed, hardest(&scripted, &self.matcher, self.task, episodes)?))
+            Ok((
+                speed,
+                hardest(&scripted, &self.matcher, self.task, episodes)?,
+            ))
         });
         speeds.collect()
     }

@@ -10,12 +10,13 @@ use std::path::Path;
 /// An update.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct UpdateMetrics {
+    /// Number of the update, from 1.
     pub update: u64,
     /// Environment steps so far.
     pub steps: u64,
     /// Seconds of training so far, over all resumptions.
     pub wall_s: f64,
-    /// Of the curriculum, in this update.
+    /// Level of the curriculum in this update.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub level: Option<u32>,
     /// Levels passed before this update.
@@ -25,13 +26,17 @@ pub struct UpdateMetrics {
     pub episodes: f64,
     /// Means over those episodes; none if none ended.
     pub success: Option<f64>,
+    /// Sum of rewards.
     pub episode_return: Option<f64>,
     /// Steps.
     pub episode_length: Option<f64>,
-    /// Environment steps a second in this update, and the seconds of its parts.
+    /// Environment steps a second in this update.
     pub steps_per_s: f64,
+    /// Seconds in the networks while acting.
     pub policy_s: f64,
+    /// Seconds in the environments.
     pub env_s: f64,
+    /// Seconds of learning.
     pub learn_s: f64,
     /// Whatever else has a name: losses; means of the environments' own statistics over the episodes
     /// that ended; and, when the evaluation episodes were run, what they found, as `evaluated_...`.
@@ -58,7 +63,9 @@ impl UpdateMetrics {
             policy_s: iteration.policy_s,
             env_s: iteration.env_s,
             learn_s: iteration.learn_s,
-            named: named.map(|(name, value)| (name.to_string(), value as f32)).collect(),
+            named: named
+                .map(|(name, value)| (name.to_string(), value as f32))
+                .collect(),
             ..UpdateMetrics::default()
         }
     }

@@ -19,6 +19,9 @@ pub struct MetricsWriter {
 
 impl MetricsWriter {
     /// Starts over with the rows that are known; new ones follow.
+    ///
+    /// # Errors
+    /// A file cannot be written.
     pub fn open(folder: &Path, known: &[UpdateMetrics]) -> Result<Self> {
         let path = folder.join("metrics.jsonl");
         let mut text = String::new();
@@ -37,6 +40,10 @@ impl MetricsWriter {
         })
     }
 
+    /// Writes an update.
+    ///
+    /// # Errors
+    /// A file cannot be written.
     pub fn write(&mut self, row: &UpdateMetrics) -> Result<()> {
         let mut line = serde_json::to_string(row)?;
         line.push('\n');

@@ -3,15 +3,15 @@
 //! reach bounds from below what a policy might.
 
 use super::evaluate::episodes;
+use crate::env::locomotion::LocomotionTask;
+use crate::env::locomotion::cpu::CpuLocomotion;
 use crate::kernels::locomotion::locomotion_layout::state_f32;
 use crate::kernels::termination;
-use crate::motion::RATE;
-use crate::motion::database::Database;
-use crate::motion::features::{TRAJECTORY_OFFSETS, POSE_DIM, TRAJECTORY_DIM};
-use crate::motion::character_frame::to_local;
-use crate::env::locomotion::LocomotionTask;
 use crate::matching::MotionMatcher;
-use crate::env::locomotion::cpu::CpuLocomotion;
+use crate::motion::RATE;
+use crate::motion::character_frame::to_local;
+use crate::motion::database::Database;
+use crate::motion::features::{POSE_DIM, TRAJECTORY_DIM, TRAJECTORY_OFFSETS};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -33,13 +33,19 @@ const ACTIONS: usize = SPEEDS.len() * (DIRECTIONS + 1) + 1;
 /// What the planner found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Planned {
+    /// Episodes planned.
     pub episodes: usize,
     /// Fraction that a plan takes to the target.
     pub success: f64,
 }
 
 /// Plans the first `count` evaluation episodes of a level.
-pub fn plan(matcher: &Arc<MotionMatcher>, task: LocomotionTask, level: u32, count: usize) -> Planned {
+pub fn plan(
+    matcher: &Arc<MotionMatcher>,
+    task: LocomotionTask,
+    level: u32,
+    count: usize,
+) -> Planned {
     let all = episodes(matcher, task, level, count);
     let ids: Vec<usize> = (0..count).collect();
     let reached: usize = ids
@@ -139,7 +145,10 @@ fn asked(envs: &CpuLocomotion, env: usize) -> ([f32; 2], f32) {
         field(state_f32::TARGET_X) - field(state_f32::X),
         field(state_f32::TARGET_Z) - field(state_f32::Z),
     ];
-    let goal = to_local(offset, [field(state_f32::HEADING_X), field(state_f32::HEADING_Z)]);
+    let goal = to_local(
+        offset,
+        [field(state_f32::HEADING_X), field(state_f32::HEADING_Z)],
+    );
     let length = goal[0].hypot(goal[1]).max(1e-6);
     (goal.map(|g| g / length), speed)
 }

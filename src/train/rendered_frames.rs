@@ -2,13 +2,13 @@
 
 use super::controller::Controller;
 use super::evaluate::{advance, episodes};
-use crate::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
-use crate::kernels::termination;
-use crate::motion::features::FRAMES_PER_STEP;
-use crate::playback::PlacedFrame;
 use crate::env::locomotion::cpu::CpuLocomotion;
 use crate::env::locomotion::{LEVELS, LocomotionTask};
+use crate::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
+use crate::kernels::termination;
 use crate::matching::MotionMatcher;
+use crate::motion::features::FRAMES_PER_STEP;
+use crate::playback::PlacedFrame;
 use anyhow::Result;
 use std::sync::Arc;
 
@@ -25,7 +25,8 @@ pub fn rendered_frames(
 ) -> Result<Vec<Vec<PlacedFrame>>> {
     let database = &matcher.database;
     let mut envs = episodes(matcher, task, LEVELS - 1, count);
-    let mut shown: Vec<Vec<PlacedFrame>> = (0..count).map(|env| vec![standing(&envs, env)]).collect();
+    let mut shown: Vec<Vec<PlacedFrame>> =
+        (0..count).map(|env| vec![standing(&envs, env)]).collect();
     let mut running: Vec<usize> = (0..count).collect();
     while !running.is_empty() {
         let before: Vec<PlacedFrame> = (0..count).map(|env| standing(&envs, env)).collect();

@@ -16,17 +16,20 @@ pub struct Summary {
     pub steps: u64,
     /// Seconds of training, over all resumptions.
     pub wall_s: f64,
+    /// Environment steps a second.
     pub steps_per_s: f64,
     /// Over the evaluation episodes, at the end: success, and what else the task measures. Nothing
     /// succeeds after a failure.
     #[serde(flatten)]
     pub evaluation: Evaluation,
-    /// Of the curriculum, at the end; the success is of the hardest.
+    /// Level of the curriculum at the end; the success is of the hardest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub level: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub levels_passed: Option<u32>,
+    /// What it was trained on.
     pub device: String,
+    /// Seed of the run.
     pub seed: u32,
     /// `steps`, `time`, `success`, `interrupt` or `failure`.
     pub stopped_by: &'static str,
@@ -87,10 +90,12 @@ impl RunDir {
         Ok(run)
     }
 
+    /// The folder.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
+    /// Where a file of the run is.
     pub fn file(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }

@@ -29,9 +29,11 @@ struct Score {
 /// Means over the latest episodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RecentMeans {
+    /// Fraction of successes.
     pub success: f64,
     /// Steps.
     pub length: f64,
+    /// Sum of rewards.
     pub episode_return: f64,
 }
 
@@ -53,7 +55,8 @@ impl TrainerState {
             steps: stats.sum("steps"),
             returns: stats.sum("returns"),
         });
-        let episodes = |recent: &[EpisodeSums]| recent.iter().map(|sums| sums.episodes).sum::<f64>();
+        let episodes =
+            |recent: &[EpisodeSums]| recent.iter().map(|sums| sums.episodes).sum::<f64>();
         while self.recent.len() > 1 && episodes(&self.recent[1..]) >= RECENT {
             self.recent.remove(0);
         }

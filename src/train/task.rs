@@ -6,11 +6,11 @@
 
 use super::config::{Config, ConfigError, Preset, TaskPreset};
 use super::evaluation::{EvalOptions, EvalReport, Evaluation};
+use super::locomotion::Locomotion;
 #[cfg(feature = "report")]
 use super::metrics::UpdateMetrics;
 #[cfg(feature = "report")]
 use super::run_dir::RunDir;
-use super::locomotion::Locomotion;
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::nn::{ActorCritic, Policy};
@@ -65,7 +65,9 @@ impl TaskEntry {
 
 /// A task with its data, and what the user should know of how it was loaded.
 pub struct Loaded {
+    /// The task.
     pub task: Box<dyn Task>,
+    /// What to tell the user.
     pub notes: Vec<String>,
 }
 
@@ -143,6 +145,7 @@ pub struct Ablation {
     pub about: &'static str,
     /// Folder of its runs unless another is named.
     pub folder: &'static str,
+    /// The variants; the first is what the others are compared with.
     pub variants: &'static [Variant],
     /// What is compared besides the success.
     pub measures: &'static [Measure],
@@ -152,7 +155,7 @@ pub struct Ablation {
 
 /// One way to do it.
 pub struct Variant {
-    /// Of its runs' folders and in tables.
+    /// Name of its runs' folders, and in tables.
     pub name: &'static str,
     /// The choices of the task that are other than the configuration's.
     pub changes: fn() -> toml::Table,
@@ -160,11 +163,13 @@ pub struct Variant {
 
 /// A column of a table of evaluations.
 pub struct Measure {
+    /// Head of the column.
     pub title: &'static str,
     /// In [`Evaluation::measures`].
     pub name: &'static str,
     /// Times this.
     pub unit: f64,
+    /// Digits behind the point.
     pub digits: usize,
 }
 

@@ -52,8 +52,14 @@ fn scalars(row: &UpdateMetrics) -> impl Iterator<Item = (String, f64)> {
         ("charts/episodic_return", row.episode_return),
         ("charts/episodic_length", row.episode_length),
     ];
-    let fields = seconds.into_iter().filter_map(|(tag, value)| Some((tag.to_string(), value?)));
-    fields.chain(row.named.iter().map(|(name, value)| (tag(name), f64::from(*value))))
+    let fields = seconds
+        .into_iter()
+        .filter_map(|(tag, value)| Some((tag.to_string(), value?)));
+    fields.chain(
+        row.named
+            .iter()
+            .map(|(name, value)| (tag(name), f64::from(*value))),
+    )
 }
 
 /// Where TensorBoard shows a name: the tags that CleanRL made common.

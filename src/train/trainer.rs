@@ -30,9 +30,13 @@ const NEAR: f64 = 0.15;
 /// What a training is of.
 #[derive(Clone, Copy)]
 pub struct Training<'a> {
+    /// The choices.
     pub config: &'a Config,
+    /// The task with its data.
     pub task: &'a dyn Task,
+    /// The run's folder.
     pub run: &'a RunDir,
+    /// Where to train.
     pub device: &'a Device,
 }
 
@@ -169,11 +173,17 @@ impl<'a> Loop<'a> {
     }
 
     fn level(&self) -> Option<u32> {
-        self.envs.curriculum.as_ref().map(|curriculum| curriculum.level())
+        self.envs
+            .curriculum
+            .as_ref()
+            .map(|curriculum| curriculum.level())
     }
 
     fn levels_passed(&self) -> Option<u32> {
-        self.envs.curriculum.as_ref().map(|curriculum| curriculum.passed)
+        self.envs
+            .curriculum
+            .as_ref()
+            .map(|curriculum| curriculum.passed)
     }
 
     /// Whether the wanted success is reached: on the fixed evaluation episodes, which are only run when
@@ -192,7 +202,9 @@ impl<'a> Loop<'a> {
     }
 
     fn evaluate(&self, episodes: usize) -> Result<Evaluation> {
-        self.training.task.evaluate(&self.learner.policy()?, episodes)
+        self.training
+            .task
+            .evaluate(&self.learner.policy()?, episodes)
     }
 
     /// Saves what this update has earned: periodic, milestone and best checkpoints.

@@ -3,8 +3,8 @@
 use super::pace::Pace;
 use super::screen::Screen;
 use crate::env::EnvBatch;
-use crate::env::locomotion::LocomotionTask;
 use crate::env::live_view::LiveView;
+use crate::env::locomotion::LocomotionTask;
 use crate::gpu::Gpu;
 use crate::motion::database::Database;
 use crate::train::metrics::UpdateMetrics;

@@ -46,12 +46,20 @@ fn every_device_is_measured_by_itself() {
 #[test]
 fn what_cannot_be_measured_is_said_before_anything_is() {
     let place = Place::with_data();
-    place.refused("bench --filter serch", 2, &["serch", "search, rasterize_maps"]);
+    place.refused(
+        "bench --filter serch",
+        2,
+        &["serch", "search, rasterize_maps"],
+    );
     place.refused("bench --json gone/a.json", 2, &["gone/a.json", "folder"]);
     place.refused("bench --plot .", 2, &[". cannot be written"]);
     place.refused("bench --device gpux", 2, &["similar value exists: 'gpu'"]);
     let words = "bench --filter hits --device cpu --data";
     place.refused(&format!("{words} gone"), 1, &["gone"]);
-    place.refused(&format!("{words} small.footwork --plot a.png"), 1, &["nothing to draw"]);
+    place.refused(
+        &format!("{words} small.footwork --plot a.png"),
+        1,
+        &["nothing to draw"],
+    );
     assert!(!place.path("a.png").exists());
 }

@@ -154,10 +154,7 @@ fn checkpoints_that_are_none_are_refused() {
             change(&good, "/header/run/run/fingerprint", json!(7)),
             "fingerprint 00000007",
         ),
-        (
-            change(&good, "/header/run", json!({})),
-            "it has no `run`",
-        ),
+        (change(&good, "/header/run", json!({})), "it has no `run`"),
         (
             change(&good, "/header/policy/network/hidden", json!([16, 16])),
             "`parameters` has",
@@ -185,7 +182,11 @@ fn checkpoints_that_are_none_are_refused() {
         ("envs.0/state_f32", "not finite"),
     ] {
         place.write(LAST, with_nan(&good, name));
-        place.refused("train plane --resume run --steps 10240", 1, &[part, "last.ckpt"]);
+        place.refused(
+            "train plane --resume run --steps 10240",
+            1,
+            &[part, "last.ckpt"],
+        );
     }
     std::fs::remove_file(place.path(LAST)).unwrap();
     place.refused(
@@ -203,8 +204,16 @@ fn a_run_whose_data_or_configuration_changed_is_not_resumed() {
     let config = place.read("run/config.toml");
     for (was, is, key) in [
         ("envs = 64", "envs = 32", "`ppo.envs`"),
-        ("hidden = [32, 32]", "hidden = [16, 16]", "`ppo.network.hidden`"),
-        ("target_extent = 5.0", "target_extent = 4.0", "`task.target_extent`"),
+        (
+            "hidden = [32, 32]",
+            "hidden = [16, 16]",
+            "`ppo.network.hidden`",
+        ),
+        (
+            "target_extent = 5.0",
+            "target_extent = 4.0",
+            "`task.target_extent`",
+        ),
         ("seed = 1", "seed = 2", "`seed`"),
     ] {
         assert!(config.contains(was));
@@ -217,11 +226,7 @@ fn a_run_whose_data_or_configuration_changed_is_not_resumed() {
     place.write("run/config.toml", &config);
 
     place.done("data synth --minutes 3 --seed 2 --out small.footwork");
-    place.refused(
-        resume,
-        1,
-        &["was trained with other data", "last.ckpt"],
-    );
+    place.refused(resume, 1, &["was trained with other data", "last.ckpt"]);
     place.refused("eval run", 1, &["was trained with other data"]);
     std::fs::remove_file(place.path("small.footwork")).unwrap();
     place.refused(resume, 1, &["cannot read", "small.footwork"]);

@@ -216,7 +216,9 @@ fn mistakes_of_an_import_are_explained() {
 
 #[test]
 fn real_recordings_are_imported() {
-    let Some(folder) = recordings("lafan1") else { return };
+    let Some(folder) = recordings("lafan1") else {
+        return;
+    };
     let place = Place::new();
     let words = format!("data import {} --out real.footwork", folder.display());
     let made = place.done(&words);

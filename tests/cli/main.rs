@@ -12,6 +12,7 @@ mod places;
 mod refused;
 mod render;
 mod sim;
+mod stand;
 #[cfg(unix)]
 mod stopped;
 mod train;

@@ -4,8 +4,7 @@ use super::{Place, keys, rows};
 use serde_json::Value;
 
 /// Small networks: what is tested here is not how well they learn.
-const SMALL: &str =
-    "[ppo]\nrollout_length = 16\nminibatch_size = 512\n[ppo.network]\nencoder_hidden = [16]\nhidden = [16]\n";
+const SMALL: &str = "[ppo]\nrollout_length = 16\nminibatch_size = 512\n[ppo.network]\nencoder_hidden = [16]\nhidden = [16]\n";
 const TRAIN: &str =
     "train obstacles --data small.footwork --device cpu --envs 64 --config small.toml";
 
@@ -77,10 +76,7 @@ fn options_of_the_task_reach_its_configuration() {
 fn obstacles_that_make_no_sense_are_refused() {
     let place = place();
     for (text, parts) in [
-        (
-            "count = -1",
-            &["`task.count` must not be negative"][..],
-        ),
+        ("count = -1", &["`task.count` must not be negative"][..]),
         ("side_min = 0", &["task.side_min is 0"]),
         ("side_min = -1", &["task.side_min is -1"]),
         ("side_max = 0.2", &["task.side_max is 0.2"]),
@@ -93,18 +89,33 @@ fn obstacles_that_make_no_sense_are_refused() {
             &["task.arena_half_extent is 2", "start cannot be kept clear"],
         ),
         ("success_radius = 3", &["task.success_radius is 3"]),
-        ("promotion_success = 1.5", &["task.promotion_success is 1.5"]),
+        (
+            "promotion_success = 1.5",
+            &["task.promotion_success is 1.5"],
+        ),
         ("reward = \"stay\"", &["[task]: unknown variant `stay`"]),
-        ("success_is_terminal = 1", &["`task.success_is_terminal` must be of the type boolean"]),
-        ("speed_distributoin = \"same\"", &["did you mean `task.speed_distribution`"]),
+        (
+            "success_is_terminal = 1",
+            &["`task.success_is_terminal` must be of the type boolean"],
+        ),
+        (
+            "speed_distributoin = \"same\"",
+            &["did you mean `task.speed_distribution`"],
+        ),
     ] {
         place.write("bad.toml", format!("[task]\n{text}"));
         let train = "train obstacles --data small.footwork --device cpu";
         place.refused(&format!("{train} --config bad.toml --out run"), 2, parts);
     }
     for (text, part) in [
-        ("size = 17", "ppo.network.convolutions has a filter size of 17"),
-        ("size = 0", "ppo.network.convolutions has a filter size of 0"),
+        (
+            "size = 17",
+            "ppo.network.convolutions has a filter size of 17",
+        ),
+        (
+            "size = 0",
+            "ppo.network.convolutions has a filter size of 0",
+        ),
         (
             "filters = 1000",
             "ppo.network.convolutions has a number of filters of 1000",
@@ -126,7 +137,11 @@ fn obstacles_that_make_no_sense_are_refused() {
         format!("[ppo.network]\nconvolutions = [{twice}, {twice}]"),
     );
     let words = "train obstacles --data small.footwork --config bad.toml --out run";
-    place.refused(words, 2, &["ppo.network.convolutions has a filter of 9 x 9 cells over an input of 8 x 8"]);
+    place.refused(
+        words,
+        2,
+        &["ppo.network.convolutions has a filter of 9 x 9 cells over an input of 8 x 8"],
+    );
     place.write("bad.toml", "[obstacles]\nreach = 1");
     place.refused(words, 2, &["unknown key `obstacles`"]);
 }

@@ -29,16 +29,25 @@ fn mistaken_options_name_what_was_meant() {
         ("train plane --max-time -5m", "invalid value '-5m'"),
         ("train plane --stop-at-success 0", "stop_at_success is 0"),
         ("train plane --stop-at-success 2", "stop_at_success is 2"),
-        ("train plane --stop-at-success nan", "stop_at_success is NaN"),
+        (
+            "train plane --stop-at-success nan",
+            "stop_at_success is NaN",
+        ),
         ("train plane --stop-at-success -1", "stop_at_success is -1"),
         ("train plane --set ppo.gama=1", "mean `ppo.gamma`?"),
         ("train plane --set ppo.gamma", "a key, `=` and a value"),
-        ("train plane --set ppo.gamma=high", "must be of the type float"),
+        (
+            "train plane --set ppo.gamma=high",
+            "must be of the type float",
+        ),
         ("train plane --set ppo.gamma=2", "ppo.gamma is 2"),
         ("train plane --set task.count=2", "unknown key `task.count`"),
         ("train plane --set task.name=obstacles", "--set task.name"),
         ("train plane --set preset=paper", "--set preset"),
-        ("train plane --no-curriculum", "unknown key `task.curriculum`"),
+        (
+            "train plane --no-curriculum",
+            "unknown key `task.curriculum`",
+        ),
         ("train plane --config gone.toml", "cannot read gone.toml"),
         ("train plane --config .", "cannot read .:"),
         ("train plane --config small.footwork", "cannot read small"),
@@ -112,7 +121,10 @@ fn mistaken_configurations_name_key_line_and_nearest() {
         ("this is no toml", &["line 1", "expected `=`"]),
         ("max_time_s = -1", &["max_time_s is -1", "between"]),
         ("stop_at_success = 3", &["stop_at_success is 3", "between"]),
-        ("task.name = \"obstacles\"", &["line 1", "of the task `obstacles`, not of `plane`"]),
+        (
+            "task.name = \"obstacles\"",
+            &["line 1", "of the task `obstacles`, not of `plane`"],
+        ),
         ("[plane]\nreach = 1", &["line 1", "unknown key `plane`"]),
         ("evaluate_every = 0", &["evaluate_every is 0"]),
         ("checkpoint_every = 0", &["checkpoint_every is 0"]),
@@ -134,11 +146,17 @@ fn mistaken_configurations_name_key_line_and_nearest() {
             "task.max_steps = 4294967295",
             &["task.max_steps is 4294967295"],
         ),
-        ("ppo.rollout_length = 1000", &["ppo.rollout_length is 1000", "max_steps"]),
+        (
+            "ppo.rollout_length = 1000",
+            &["ppo.rollout_length is 1000", "max_steps"],
+        ),
         ("ppo.epochs = 0", &["ppo.epochs is 0"]),
         ("ppo.learning_rate = nan", &["ppo.learning_rate is NaN"]),
         ("ppo.learning_rate = -1", &["ppo.learning_rate is -1"]),
-        ("ppo.final_lr_fraction = nan", &["ppo.final_lr_fraction is NaN"]),
+        (
+            "ppo.final_lr_fraction = nan",
+            &["ppo.final_lr_fraction is NaN"],
+        ),
         ("ppo.gamma = 1.5", &["ppo.gamma is 1.5", "between 0 and 1"]),
         ("ppo.init_log_std = nan", &["ppo.init_log_std is NaN"]),
         ("ppo.max_grad_norm = -1", &["ppo.max_grad_norm is -1"]),
@@ -206,9 +224,17 @@ fn a_folder_that_is_no_run_is_refused() {
 fn runs_of_older_versions_are_refused() {
     let place = Place::with_run();
     let config = place.read("run/config.toml");
-    place.write("run/config.toml", "preset = \"fast\"\nsteps = 1000\n[plane]\nreach = 0.5\n");
+    place.write(
+        "run/config.toml",
+        "preset = \"fast\"\nsteps = 1000\n[plane]\nreach = 0.5\n",
+    );
     let part = "run/config.toml names no task in its table [task]: it was written by footwork 0.1 from before";
-    for words in ["eval run", "train plane --resume run", "play run", "render run --out a.png"] {
+    for words in [
+        "eval run",
+        "train plane --resume run",
+        "play run",
+        "render run --out a.png",
+    ] {
         place.refused(words, 2, &[part]);
     }
     // A key of the version that wrote it.
@@ -216,8 +242,15 @@ fn runs_of_older_versions_are_refused() {
     place.write("run/config.toml", other.replacen("gamma", "gamna", 1));
     place.refused("eval run", 2, &["unknown key `ppo.gamna`", "(footwork 9."]);
     // No task of this version.
-    place.write("run/config.toml", config.replacen("\"plane\"", "\"plain\"", 1));
-    place.refused("eval run", 2, &["there is no task `plain`, did you mean `plane`?"]);
+    place.write(
+        "run/config.toml",
+        config.replacen("\"plane\"", "\"plain\"", 1),
+    );
+    place.refused(
+        "eval run",
+        2,
+        &["there is no task `plain`, did you mean `plane`?"],
+    );
     place.write("run/config.toml", &config);
 
     let format = Format {
@@ -226,7 +259,8 @@ fn runs_of_older_versions_are_refused() {
     };
     let path = place.path("run/checkpoints/last.ckpt");
     container::save(&path, format, &"a header", &Arrays::default()).unwrap();
-    let part = "last.ckpt was written by footwork 0.1 from before checkpoints had sections (format 3)";
+    let part =
+        "last.ckpt was written by footwork 0.1 from before checkpoints had sections (format 3)";
     for words in ["eval run", "train plane --resume run --steps 10240"] {
         place.refused(words, 1, &[part]);
     }

@@ -215,12 +215,20 @@ fn a_database_made_with_other_weights_keeps_them() {
 fn any_key_can_be_set() {
     let place = Place::with_data();
     let set = "--set ppo.gamma=0.9 --set task.success_radius=1 --set ppo.network.hidden=[8] --set device=cpu";
-    place.done(&format!("train plane --data small.footwork --envs 16 --steps 256 {set} --out run"));
+    place.done(&format!(
+        "train plane --data small.footwork --envs 16 --steps 256 {set} --out run"
+    ));
     let config = place.read("run/config.toml");
-    for line in ["gamma = 0.9", "success_radius = 1.0", "hidden = [8]", "device = \"cpu\"", "name = \"plane\""] {
+    for line in [
+        "gamma = 0.9",
+        "success_radius = 1.0",
+        "hidden = [8]",
+        "device = \"cpu\"",
+        "name = \"plane\"",
+    ] {
         assert!(config.contains(line), "no {line} in {config}");
     }
     // A run's configuration makes another such run.
-    place.done(&format!("train plane --config run/config.toml --out again"));
+    place.done("train plane --config run/config.toml --out again");
     assert_eq!(place.read("again/config.toml"), config);
 }

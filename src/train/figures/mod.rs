@@ -24,7 +24,9 @@ pub fn points(rows: &[UpdateMetrics]) -> Vec<Point> {
 
 /// Where each level but the first begins.
 pub fn level_marks(rows: &[UpdateMetrics]) -> Vec<Level> {
-    let rises = rows.windows(2).filter(|pair| pair[0].level != pair[1].level);
+    let rises = rows
+        .windows(2)
+        .filter(|pair| pair[0].level != pair[1].level);
     let marks = rises.filter_map(|pair| {
         Some(Level {
             steps: pair[0].steps,

@@ -23,5 +23,9 @@ pub fn draw(run: &RunDir, rows: &[UpdateMetrics], locomotion: &Locomotion) -> Re
     let policy = Checkpoint::load(&run.last()?)?.policy;
     let Locomotion { task, matcher } = locomotion;
     let drawn = among_obstacles(&policy, matcher, *task, DRAWN)?;
-    Ok(obstacle_walks::draw(&run.file("obstacle_walks.png"), &drawn, STEP_S)?)
+    Ok(obstacle_walks::draw(
+        &run.file("obstacle_walks.png"),
+        &drawn,
+        STEP_S,
+    )?)
 }

@@ -1,15 +1,15 @@
 //! Episodes of a policy, for pictures.
 
-use crate::train::controller::Controller;
-use crate::train::evaluate::{advance, episodes};
-use crate::kernels::locomotion::locomotion_layout::{MAPS, boxes, state_f32};
-use crate::kernels::termination;
-use crate::kernels::locomotion::rasterize_maps::cell;
-use crate::motion::character_frame::to_local;
-use crate::report::obstacle_walks::{End, DrawnEpisode, Map, Obstacle};
 use crate::env::locomotion::cpu::CpuLocomotion;
 use crate::env::locomotion::{LEVELS, LocomotionTask, STEP_S};
+use crate::kernels::locomotion::locomotion_layout::{MAPS, boxes, state_f32};
+use crate::kernels::locomotion::rasterize_maps::cell;
+use crate::kernels::termination;
 use crate::matching::MotionMatcher;
+use crate::motion::character_frame::to_local;
+use crate::report::obstacle_walks::{DrawnEpisode, End, Map, Obstacle};
+use crate::train::controller::Controller;
+use crate::train::evaluate::{advance, episodes};
 use anyhow::Result;
 use std::sync::Arc;
 
@@ -18,11 +18,14 @@ use std::sync::Arc;
 pub struct EpisodeTrajectory {
     /// Root on the ground after every step, `[x, z]`, m.
     pub points: Vec<[f32; 2]>,
+    /// Target on the ground, `[x, z]`, m.
     pub target: [f32; 2],
+    /// Whether the target was reached.
     pub reached: bool,
 }
 
 impl EpisodeTrajectory {
+    /// Length of the episode, s.
     pub fn seconds(&self) -> f32 {
         (self.points.len() - 1) as f32 * STEP_S
     }
@@ -54,10 +57,7 @@ pub fn trajectories(
         .collect();
     for _ in 0..task.max_steps() {
         advance(&mut envs, controller)?;
-        let under_way = all
-            .iter_mut()
-            .enumerate()
-            .filter(|(_, one)| !one.reached);
+        let under_way = all.iter_mut().enumerate().filter(|(_, one)| !one.reached);
         for (env, one) in under_way {
             one.points.push(at(&envs, env, state_f32::X, state_f32::Z));
             one.reached = envs.termination[env] == termination::SUCCESS;

@@ -11,13 +11,12 @@ use crate::train::config::{Config, ConfigError, Preset, TaskPreset, table, withi
 use crate::train::eval_report::{levels, levels_json};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::locomotion::{Locomotion, rollout_spec, split, with_weights};
-use crate::train::task::{
-    Ablation, Loaded, Measure, Task, TaskEntry, Variant,
-};
+use crate::train::task::{Ablation, Loaded, Measure, Task, TaskEntry, Variant};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 
+/// The task in the registry.
 pub const ENTRY: TaskEntry = TaskEntry {
     name: "obstacles",
     about: "Reach a target among 100 moving obstacles",
@@ -71,7 +70,12 @@ fn spec(config: &Config) -> Result<EnvSpec, ConfigError> {
     within("ppo.envs times task.count", boxes, 0, 1 << 23)?;
     within("task.side_min", task.side_min, 0.001, 1000.0)?;
     within("task.side_max", task.side_max, task.side_min, 1000.0)?;
-    within("task.arena_half_extent", task.arena_half_extent, 0.1, 1000.0)?;
+    within(
+        "task.arena_half_extent",
+        task.arena_half_extent,
+        0.1,
+        1000.0,
+    )?;
     within("task.spawn_clearance", task.spawn_clearance, 0.0, 1000.0)?;
     let least = 0.5 * task.side_max + task.spawn_clearance;
     if task.arena_half_extent <= least {
@@ -90,7 +94,12 @@ fn spec(config: &Config) -> Result<EnvSpec, ConfigError> {
     let (first, last) = (task.target_extent_first, task.target_extent_last);
     within("task.target_extent_first", first, 0.1, 1000.0)?;
     within("task.target_extent_last", last, 0.1, 1000.0)?;
-    within("task.success_radius", task.success_radius, 0.001, first.min(last))?;
+    within(
+        "task.success_radius",
+        task.success_radius,
+        0.001,
+        first.min(last),
+    )?;
     within("task.max_steps", task.max_steps, 1, 10_000)?;
     within("task.hit_reward", task.hit_reward, 0.0, 1e6)?;
     within("task.success_bonus", task.success_bonus, -1e6, 1e6)?;
@@ -122,7 +131,9 @@ impl Task for ObstaclesTask {
 
     fn with_choices(&self, config: &Config) -> Result<Box<dyn Task>, ConfigError> {
         let (obstacles, _) = split::<Obstacles>(config)?;
-        let locomotion = self.locomotion.with_task(LocomotionTask::Obstacles(obstacles));
+        let locomotion = self
+            .locomotion
+            .with_task(LocomotionTask::Obstacles(obstacles));
         Ok(Box::new(ObstaclesTask {
             obstacles,
             locomotion,

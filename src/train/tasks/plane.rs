@@ -10,13 +10,12 @@ use crate::train::config::{Config, ConfigError, Preset, TaskPreset, within};
 use crate::train::evaluate::hardest;
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::locomotion::{Locomotion, rollout_spec, split, with_weights};
-use crate::train::task::{
-    Loaded, Task, TaskEntry, Unsupported,
-};
+use crate::train::task::{Loaded, Task, TaskEntry, Unsupported};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 
+/// The task in the registry.
 pub const ENTRY: TaskEntry = TaskEntry {
     name: "plane",
     about: "Reach a target on an empty plane",
@@ -76,10 +75,7 @@ impl Task for PlaneTask {
     fn with_choices(&self, config: &Config) -> Result<Box<dyn Task>, ConfigError> {
         let (plane, _) = split::<Plane>(config)?;
         let locomotion = self.locomotion.with_task(LocomotionTask::Plane(plane));
-        Ok(Box::new(PlaneTask {
-            plane,
-            locomotion,
-        }))
+        Ok(Box::new(PlaneTask { plane, locomotion }))
     }
 
     fn fingerprint(&self) -> u32 {

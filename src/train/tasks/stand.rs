@@ -14,14 +14,13 @@ use crate::physics::scenes;
 use crate::rl::ppo::Ppo;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
-use crate::train::task::{
-    Loaded, Task, TaskEntry, Unsupported,
-};
+use crate::train::task::{Loaded, Task, TaskEntry, Unsupported};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 use std::sync::Arc;
 
+/// The task in the registry.
 pub const ENTRY: TaskEntry = TaskEntry {
     name: "stand",
     about: "Keep a simulated body upright while it is pushed",
@@ -115,7 +114,9 @@ impl Task for StandTask {
     }
 
     fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
-        EnvBatch::open(device, envs, None, |part| open(device, &self.stand, part, seed))
+        EnvBatch::open(device, envs, None, |part| {
+            open(device, &self.stand, part, seed)
+        })
     }
 
     fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {
@@ -148,7 +149,8 @@ impl Task for StandTask {
             ("--motion-quality", wanted.motion_quality),
         ];
         if let Some((option, _)) = beside.into_iter().find(|(_, wanted)| *wanted) {
-            let why = format!("{option} is for motion matching: a simulated body has no such thing");
+            let why =
+                format!("{option} is for motion matching: a simulated body has no such thing");
             return Err(Unsupported(why).into());
         }
         let found = self.evaluate(policy, wanted.episodes)?;
