@@ -34,7 +34,7 @@ fn updates_allocate_nothing_on_the_device() {
             }
             given(&device)
         };
-        let settled = updates(16);
-        assert_eq!(updates(24), settled, "{}: bytes and blocks", entry.name);
+        let settled = updates(8);
+        assert_eq!(updates(12), settled, "{}: bytes and blocks", entry.name);
     }
 }

@@ -48,9 +48,11 @@ impl Player {
 
     /// Rollouts of so many steps.
     pub fn new(device: &Device, envs: EnvBatch, config: &EnvConfig, steps: usize) -> Self {
-        let rollout = |part: &Box<dyn VecEnv>| Rollout::new(device, part.spec(), steps);
+        let specs = envs.parts.iter().map(|part| part.spec());
         Player {
-            rollouts: envs.parts.iter().map(rollout).collect(),
+            rollouts: specs
+                .map(|spec| Rollout::new(device, spec, steps))
+                .collect(),
             device: device.clone(),
             obstacles: config.task.obstacles(),
             step: 0,
@@ -156,13 +158,13 @@ impl Player {
 
     /// The state of all environments.
     pub fn state(&self) -> EnvState {
-        let state = |part: &Box<dyn VecEnv>| {
+        let state = |part: &dyn VecEnv| {
             let (envs, mut section) = (part.spec().envs, Section::default());
             part.save(&mut section).expect("a section");
             let state = EnvState::load(&mut section, envs, self.obstacles, DATABASE.frames());
             state.expect("the state of such environments")
         };
-        let parts: Vec<EnvState> = self.envs.parts.iter().map(state).collect();
+        let parts: Vec<EnvState> = self.envs.parts.iter().map(|part| state(&**part)).collect();
         let of = |values: fn(&EnvState) -> &Vec<f32>, count| {
             let parts: Vec<_> = parts.iter().map(|part| values(part).clone()).collect();
             joined(count, &parts)
