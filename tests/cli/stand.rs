@@ -16,7 +16,12 @@ fn a_simulated_body_is_trained_and_evaluated() {
 
     let found = place.done("eval run --episodes 5 --json").out;
     let found: Value = serde_json::from_str(&found).unwrap();
-    for key in ["episodes", "success", "episode_length_mean_s", "uprightness"] {
+    for key in [
+        "episodes",
+        "success",
+        "episode_length_mean_s",
+        "uprightness",
+    ] {
         assert!(keys(&found).contains(&key), "no {key} in {found}");
     }
     place.done("render run --out strip.png");
@@ -50,8 +55,14 @@ fn choices_that_a_simulated_body_does_not_have_are_refused() {
     for (rest, part) in [
         ("--data small.footwork", "uses no motion"),
         ("--no-hit-reward", "unknown key `task.hit_reward`"),
-        ("--set task.min_push=20", "min_push must not exceed max_push"),
-        ("--set ppo.rollout_length=1000", "ppo.rollout_length is 1000"),
+        (
+            "--set task.min_push=20",
+            "min_push must not exceed max_push",
+        ),
+        (
+            "--set ppo.rollout_length=1000",
+            "ppo.rollout_length is 1000",
+        ),
         ("--watch", "--watch shows motion matching"),
     ] {
         place.refused(&format!("{TRAIN} {rest} --out run"), 2, &[part]);
