@@ -32,7 +32,7 @@
 //! let task = LocomotionTask::Plane(Plane::default());
 //! let config = EnvConfig { task, envs: ppo.envs, seed: 1, level: 0 };
 //! let mut envs = config.open(&Device::Cpu, &matcher)?;
-//! let mut learner = PpoLearner::new(&ppo, &envs.spec(), &Device::Cpu, 1)?;
+//! let mut learner = PpoLearner::new(&ppo, &envs, &Device::Cpu, 1)?;
 //! for update in 0..3 {
 //!     let iteration = learner.iterate(&mut envs, update * ppo.batch() as u64)?;
 //!     println!("{:?}", iteration.stats.mean("returns"));

@@ -27,7 +27,7 @@ fn updates_allocate_nothing_on_the_device() {
         let task = (entry.load)(&config).expect("its data").task;
         let mut envs = task.open(&device, config.ppo.envs, 1).expect("they fit");
         let mut learner =
-            PpoLearner::new(&config.ppo, &envs.spec(), &device, 1).expect("a network that fits");
+            PpoLearner::new(&config.ppo, &envs, &device, 1).expect("a network that fits");
         let mut updates = |count: usize| {
             for _ in 0..count {
                 learner.iterate(&mut envs, 0).expect("an update");

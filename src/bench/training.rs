@@ -63,7 +63,7 @@ fn update(
     (record.tell)(&format!("{}: training, {name} of {envs}", on.name()));
     let time = on.install(|| -> Result<f64> {
         let mut batch = config.open(&on.device, context.matcher)?;
-        let mut learner = PpoLearner::new(ppo, &batch.spec(), &on.device, 1)?;
+        let mut learner = PpoLearner::new(ppo, &batch, &on.device, 1)?;
         seconds(on, || learner.iterate(&mut batch, 0).map(drop))
     })?;
     let workload = Workload {

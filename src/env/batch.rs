@@ -55,6 +55,11 @@ impl EnvBatch {
         }
     }
 
+    /// As [`VecEnv::rest_action`].
+    pub fn rest_action(&self) -> Vec<f32> {
+        self.parts[0].rest_action()
+    }
+
     /// Names of what [`EnvBatch::stats`] writes.
     pub fn stat_names(&self) -> &'static [&'static str] {
         self.parts[0].stat_names()

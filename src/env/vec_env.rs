@@ -24,6 +24,11 @@ pub struct Transition<'a> {
 pub trait VecEnv: Send {
     fn spec(&self) -> &EnvSpec;
 
+    /// An action that keeps an agent as it is, `[action]`: what a policy begins near. Empty: all zero.
+    fn rest_action(&self) -> Vec<f32> {
+        Vec::new()
+    }
+
     /// Writes the observations `[rows][observation]` of this moment to `out` from the index `at` on.
     fn observe(&mut self, out: &mut Array, at: usize);
 

@@ -91,7 +91,7 @@ impl<'a> Loop<'a> {
             device,
         } = training;
         let mut envs = task.open(device, config.ppo.envs, config.seed)?;
-        let learner = PpoLearner::new(&config.ppo, &envs.spec(), device, config.seed)?;
+        let learner = PpoLearner::new(&config.ppo, &envs, device, config.seed)?;
         let mut learner: Box<dyn Algorithm> = Box::new(learner);
         let (mut steps, mut earlier_s, mut state) = (0, 0.0, TrainerState::default());
         let mut rows = Vec::new();

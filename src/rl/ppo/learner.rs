@@ -53,11 +53,12 @@ const ACTOR: usize = 0;
 const CRITIC: usize = 1;
 
 impl PpoLearner {
-    /// A learner for environments of `spec`.
+    /// A learner for the environments of a training. Its first actions are near their rest action.
     ///
     /// # Errors
     /// The network does not fit the observation, or the device.
-    pub fn new(config: &Ppo, spec: &EnvSpec, device: &Device, seed: u32) -> Result<Self> {
+    pub fn new(config: &Ppo, envs: &EnvBatch, device: &Device, seed: u32) -> Result<Self> {
+        let spec = &envs.spec();
         let networks = ActorCritic::new(&config.network, &spec.observation, spec.action)?;
         let parameters = networks.parameters();
         let samples = config.rollout_length * spec.rows();
@@ -69,9 +70,10 @@ impl PpoLearner {
             samples,
             config.minibatch_size.min(samples),
         )?;
+        let initial = networks.init(seed, config.init_log_std, &envs.rest_action());
         let normalizer = || RunningMeanStd::new(device, spec.observation.dim());
         Ok(PpoLearner {
-            parameters: Array::from_slice(device, &networks.init(seed, config.init_log_std, &[])),
+            parameters: Array::from_slice(device, &initial),
             adam: Adam::new(device, parameters),
             value_normalizer: ValueNormalizer::new(device),
             observation_normalizer: config.normalize_observations.then(normalizer),

@@ -47,7 +47,7 @@ fn preset(_: Preset) -> TaskPreset {
             gamma: 0.97,
             lambda: 0.95,
             // Joints at rest are a good guess: explore near them.
-            init_log_std: -1.0,
+            init_log_std: -2.0,
             normalize_observations: true,
             network: NetworkConfig {
                 convolutions: Vec::new(),

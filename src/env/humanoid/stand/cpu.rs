@@ -1,6 +1,7 @@
 //! The task on all cores: each world plays its step from beginning to end while it is in the cache.
 
 use super::common::Common;
+use crate::env::humanoid::action::rest_action;
 use crate::container::{Section, SectionError};
 use crate::env::humanoid::batch::{CpuSimulatorBatch, SimulatedWorld, SimulatorBatch};
 use crate::env::spec::EnvSpec;
@@ -131,6 +132,10 @@ impl Common {
 impl VecEnv for CpuStand {
     fn spec(&self) -> &EnvSpec {
         &self.common.spec
+    }
+
+    fn rest_action(&self) -> Vec<f32> {
+        rest_action(&self.common.batch.model)
     }
 
     fn observe(&mut self, out: &mut Array, at: usize) {

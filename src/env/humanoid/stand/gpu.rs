@@ -1,6 +1,7 @@
 //! The task on a GPU: launches only, nothing copied to the host.
 
 use super::common::Common;
+use crate::env::humanoid::action::rest_action;
 use crate::container::{Section, SectionError};
 use crate::env::humanoid::batch::GpuSimulatorBatch;
 use crate::env::spec::EnvSpec;
@@ -81,6 +82,10 @@ impl GpuStand {
 impl VecEnv for GpuStand {
     fn spec(&self) -> &EnvSpec {
         &self.common.spec
+    }
+
+    fn rest_action(&self) -> Vec<f32> {
+        rest_action(&self.common.batch.model)
     }
 
     fn observe(&mut self, out: &mut Array, at: usize) {
