@@ -13,7 +13,7 @@ pub struct Effort {
     pub armature: f32,
 }
 
-/// Half angles below this count as none: the axis of a turn so small is lost in rounding.
+/// Half angles below this count as none: the axis of a rotation so small is lost in rounding.
 const SMALLEST: f32 = 1e-9;
 
 /// The exponential map's inverse: axis times angle, rad, the angle at most pi.

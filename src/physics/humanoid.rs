@@ -4,7 +4,7 @@ use super::mjcf;
 use super::model::Model;
 use std::path::Path;
 
-/// Of the humanoid, in the model's order.
+/// Names of the humanoid's bodies, in the model's order.
 pub const BODIES: [&str; 15] = [
     "pelvis",
     "torso",

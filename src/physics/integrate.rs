@@ -4,6 +4,7 @@ use super::kinematics::{quaternion, store};
 use super::model::{JointKind, Model};
 use glam::{Quat, Vec3};
 
+/// Advances velocities, then positions, by a step of `dt` seconds.
 #[inline]
 pub fn integrate(model: &Model, acceleration: &[f32], dt: f32, q: &mut [f32], v: &mut [f32]) {
     for (v, a) in v.iter_mut().zip(acceleration) {
@@ -19,20 +20,20 @@ pub fn drift(model: &Model, v: &[f32], dt: f32, q: &mut [f32]) {
         let (q, v) = (&mut q[joint.q..], &v[joint.v..]);
         match joint.kind {
             JointKind::Hinge => q[0] += dt * v[0],
-            JointKind::Ball => turn(&mut q[..4], &v[..3], dt),
+            JointKind::Ball => rotate(&mut q[..4], &v[..3], dt),
             JointKind::Free => {
                 for axis in 0..3 {
                     q[axis] += dt * v[axis];
                 }
-                turn(&mut q[3..7], &v[3..6], dt);
+                rotate(&mut q[3..7], &v[3..6], dt);
             }
         }
     }
 }
 
-/// Turns a quaternion by an angular velocity in its own frame.
+/// Rotates a quaternion by an angular velocity in its own frame.
 #[inline]
-fn turn(q: &mut [f32], v: &[f32], dt: f32) {
-    let turned = quaternion(q) * Quat::from_scaled_axis(Vec3::from_slice(v) * dt);
-    store(q, turned.normalize());
+fn rotate(q: &mut [f32], v: &[f32], dt: f32) {
+    let rotated = quaternion(q) * Quat::from_scaled_axis(Vec3::from_slice(v) * dt);
+    store(q, rotated.normalize());
 }

@@ -102,7 +102,7 @@ fn swept(joint: &Joint, pose: &Pose, anchor: Vec3, axis: Vec3, axes: &mut [Spati
                     angular: Vec3::ZERO,
                     linear: axis,
                 };
-                // A root turns about its own place, which is the origin.
+                // A root rotates about its own position, which is the origin.
                 axes[joint.v + 3 + k] = about(pose.rotation * axis, Vec3::ZERO);
             }
         }

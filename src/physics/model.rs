@@ -43,7 +43,7 @@ pub struct Body {
     pub joints: Range<usize>,
     pub dofs: Range<usize>,
     pub tree: usize,
-    /// Of its own degrees of freedom or, welded, of the nearest ancestor's that has some.
+    /// Last of its own degrees of freedom or, if it is welded, of the nearest ancestor's that has some.
     pub last_dof: Option<usize>,
     /// Mean inverse mass that a force at the centre of mass meets at the start, 1/kg (MuJoCo's
     /// `body_invweight0`, translation).

@@ -47,10 +47,10 @@ impl MotionClip {
     /// after them.
     pub fn at(&self, model: &Model, time: f32) -> (Vec<f32>, Vec<f32>) {
         let last = self.frames - 1;
-        let place = (time * self.rate).clamp(0.0, last as f32);
-        let before = place as usize;
+        let index = (time * self.rate).clamp(0.0, last as f32);
+        let before = index as usize;
         let after = (before + 1).min(last);
-        let share = place - before as f32;
+        let share = index - before as f32;
         let mut q = mixed(self.q(before), self.q(after), share);
         for first in turns(model) {
             let [a, b] = [before, after].map(|frame| quaternion(&self.q(frame)[first..]));
@@ -113,18 +113,18 @@ fn velocities(model: &Model, rate: f32, q: &[f32]) -> Vec<f32> {
 fn difference(model: &Model, from: &[f32], to: &[f32], rate: f32, v: &mut [f32]) {
     for joint in &model.joints {
         let (from, to, v) = (&from[joint.q..], &to[joint.q..], &mut v[joint.v..]);
-        let turn = |at: usize| {
-            let turn = quaternion(&from[at..]).inverse() * quaternion(&to[at..]);
-            (rotation_vector(turn) * rate).to_array()
+        let turned = |at: usize| {
+            let rotation = quaternion(&from[at..]).inverse() * quaternion(&to[at..]);
+            (rotation_vector(rotation) * rate).to_array()
         };
         match joint.kind {
             JointKind::Hinge => v[0] = (to[0] - from[0]) * rate,
-            JointKind::Ball => v[..3].copy_from_slice(&turn(0)),
+            JointKind::Ball => v[..3].copy_from_slice(&turned(0)),
             JointKind::Free => {
                 for axis in 0..3 {
                     v[axis] = (to[axis] - from[axis]) * rate;
                 }
-                v[3..6].copy_from_slice(&turn(3));
+                v[3..6].copy_from_slice(&turned(3));
             }
         }
     }

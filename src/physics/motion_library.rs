@@ -52,7 +52,7 @@ pub struct MotionLibrary {
 }
 
 impl MotionLibrary {
-    /// Of BVH files and folders of them, as [`import`] reads them. Longer clips weigh more.
+    /// A library of BVH files and folders of them, as [`import`] reads them. Longer clips weigh more.
     ///
     /// # Errors
     /// No paths, files that cannot be read, folders without recordings or with only short ones,
@@ -72,7 +72,7 @@ impl MotionLibrary {
         Ok(MotionLibrary { notes, ..library })
     }
 
-    /// Of clips of one skeleton. Longer clips weigh more.
+    /// A library of clips of one skeleton. Longer clips weigh more.
     ///
     /// # Errors
     /// No clips, a skeleton that cannot be put into the body.
@@ -80,7 +80,7 @@ impl MotionLibrary {
         MotionLibrary::new(retargeted(clips, roles, model)?, model)
     }
 
-    /// Of motions of one model. Longer motions weigh more.
+    /// A library of motions of one model. Longer motions weigh more.
     ///
     /// # Errors
     /// No motions, motions of another model.
@@ -105,7 +105,7 @@ impl MotionLibrary {
         library.qacc_whitened(&weights)
     }
 
-    /// The same motions, drawn by other weights.
+    /// Sets the weights by which motions are drawn.
     ///
     /// # Errors
     /// Weights that are negative, no numbers, all zero, or not one for each motion.

@@ -1,8 +1,9 @@
-//! A place and a turn: a frame seen from another.
+//! Position and rotation of a frame as seen from another.
 
 use glam::{Quat, Vec3};
 use std::ops::Mul;
 
+/// Position and rotation of a frame as seen from another.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
     /// m

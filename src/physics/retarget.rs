@@ -6,72 +6,28 @@
 //! knee bends ([`limb`]), feet their soles, found where they stand ([`sole`]).
 
 mod anatomy;
+mod error;
 mod humanoid_joints;
 mod limb;
+mod recorded_frame;
 mod sole;
 
-use super::humanoid;
 use super::model::Model;
 use super::motion_clip::MotionClip;
 use crate::motion::clip::Clip;
-use crate::motion::error as motion;
 use crate::motion::resample::resample;
 use crate::motion::roles::Roles;
 use crate::motion::units;
 use anatomy::Anatomy;
+pub use error::{Result, RetargetError};
 use glam::{Quat, Vec3};
-use humanoid_joints::HumanoidJoints;
-use limb::{Bend, Hinge};
+use humanoid_joints::{HumanoidJoints, TargetPose};
+use limb::Hinge;
+use recorded_frame::RecordedFrame;
 use sole::Sole;
-
-pub type Result<T> = std::result::Result<T, RetargetError>;
-
-/// Why a recording cannot be put into a body.
-#[derive(Debug, thiserror::Error)]
-pub enum RetargetError {
-    #[error(transparent)]
-    Motion(#[from] motion::MotionError),
-    #[error(
-        "the model '{model}' has no {kind} joint on a body '{body}': recordings are for bodies like the \
-         humanoid, whose parts are called {}", humanoid::BODIES.join(", ")
-    )]
-    Model {
-        model: String,
-        body: String,
-        kind: &'static str,
-    },
-    #[error(
-        "the feet of the model '{model}' have no geom that touches anything: give one to 'right_foot' or 'left_foot'"
-    )]
-    Feet { model: String },
-    #[error("the clip '{clip}' has {frames} frames, but a motion needs at least 2")]
-    Short { clip: String, frames: usize },
-    #[error(
-        "unknown skeleton: {problem}; its joints are {joints}. Give a roles file that names other joints"
-    )]
-    Skeleton { problem: String, joints: String },
-}
 
 /// Turns the recordings' axes, y up, z forward, to the bodies': z up, x forward.
 const UPRIGHT: Quat = Quat::from_xyzw(0.5, 0.5, 0.5, 0.5);
-
-/// A recorded frame: places (m) and turns of the skeleton's joints, z up.
-struct Frame {
-    at: Vec<Vec3>,
-    rotation: Vec<Quat>,
-}
-
-/// What a frame asks of the humanoid, in the world. Of pairs, the right one is first.
-struct TargetPose {
-    /// Between the hip joints, m.
-    hips: Vec3,
-    pelvis: Quat,
-    torso: Quat,
-    head: Quat,
-    arms: [Bend; 2],
-    legs: [Bend; 2],
-    feet: [Quat; 2],
-}
 
 /// The clip's motion in a humanoid: it begins above the origin and stands on the ground, lengths are
 /// scaled as the legs' are. Joints stay within their ranges.
@@ -89,7 +45,7 @@ pub fn retarget(clip: &Clip, roles: &Roles, model: &Model) -> Result<MotionClip>
     let joints = HumanoidJoints::of(model)?;
     let anatomy = Anatomy::of(&clip.skeleton, roles)?;
     let scale = joints.leg() / units::leg(&clip.skeleton, roles);
-    let frames: Vec<Frame> = (0..clip.frames())
+    let frames: Vec<RecordedFrame> = (0..clip.frames())
         .map(|index| frame(&clip, index))
         .collect();
     let source = Source::of(anatomy, &frames);
@@ -104,9 +60,9 @@ pub fn retarget(clip: &Clip, roles: &Roles, model: &Model) -> Result<MotionClip>
     Ok(MotionClip::new(&clip.name, model, clip.rate, q))
 }
 
-fn frame(clip: &Clip, index: usize) -> Frame {
+fn frame(clip: &Clip, index: usize) -> RecordedFrame {
     let (at, rotation) = clip.world(index);
-    Frame {
+    RecordedFrame {
         at: at.into_iter().map(|at| UPRIGHT * at).collect(),
         rotation: rotation
             .into_iter()
@@ -124,11 +80,11 @@ struct Source {
 }
 
 impl Source {
-    fn of(anatomy: Anatomy, frames: &[Frame]) -> Source {
+    fn of(anatomy: Anatomy, frames: &[RecordedFrame]) -> Source {
         // An elbow bends the hanging arm forwards, a knee the leg backwards.
         let rest = |joint: usize, hinge: Vec3| {
             let axes = anatomy.axes;
-            move |frame: &Frame| {
+            move |frame: &RecordedFrame| {
                 let trunk = frame.rotation[joint] * axes;
                 [trunk * Vec3::NEG_Z, trunk * hinge]
             }
@@ -145,12 +101,12 @@ impl Source {
         }
     }
 
-    fn hips(&self, frame: &Frame) -> Vec3 {
+    fn hips(&self, frame: &RecordedFrame) -> Vec3 {
         let [right, left] = self.anatomy.legs.map(|leg| frame.at[leg.top]);
         (right + left) / 2.0
     }
 
-    fn figure(&self, frame: &Frame) -> TargetPose {
+    fn figure(&self, frame: &RecordedFrame) -> TargetPose {
         let trunk = |joint: usize| frame.rotation[joint] * self.anatomy.axes;
         TargetPose {
             hips: self.hips(frame),

@@ -1,4 +1,4 @@
-//! Spatial vectors and inertias, in world axes about one origin a tree: the root body's place, so
+//! Spatial vectors and inertias, in world axes about one origin a tree: the root body's position, so
 //! that single precision suffices anywhere (Featherstone, "Rigid Body Dynamics Algorithms", ch. 2).
 
 use glam::{Mat3, Vec3};
@@ -41,7 +41,7 @@ impl Spatial {
         self.angular.dot(other.angular) + self.linear.dot(other.linear)
     }
 
-    /// Of a motion: the velocity of the point at `arm` from the origin.
+    /// Velocity, in a motion, of the point at `arm` from the origin.
     #[inline]
     pub fn at(self, arm: Vec3) -> Vec3 {
         self.linear + self.angular.cross(arm)
@@ -77,7 +77,7 @@ impl Mul<f32> for Spatial {
     }
 }
 
-/// Of a rigid body, or of several that move as one.
+/// Inertia of a rigid body, or of several that move as one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inertia {
     pub mass: f32,

@@ -12,13 +12,10 @@ fn figures(place: &Place, words: &str) -> Value {
 fn random_actions_are_told_in_figures() {
     let place = Place::new();
     for device in ["cpu", "lavapipe"] {
-        let told = figures(
-            &place,
-            &format!("--worlds 16 --seconds 1 --device {device}"),
-        );
-        assert_eq!(told["worlds"], 16);
+        let told = figures(&place, &format!("--envs 16 --seconds 1 --device {device}"));
+        assert_eq!(told["envs"], 16);
         assert_eq!(told["control_steps"], 16 * 30);
-        assert_eq!(told["nan_worlds"], 0);
+        assert_eq!(told["diverged_envs"], 0);
         assert_eq!(told["overflow"], 0);
         assert!(told["control_steps_per_s"].as_f64().unwrap() > 0.0);
         // Within a second it falls.
@@ -35,22 +32,19 @@ fn random_actions_are_told_in_figures() {
 fn equal_runs_end_in_equal_states() {
     let place = Place::new();
     let hash = |words: &str| {
-        let words = format!("--worlds 8 --seconds 0.5 --device cpu {words}");
+        let words = format!("--envs 8 --seconds 0.5 --device cpu {words}");
         figures(&place, &words)["state_hash"].clone()
     };
     assert_eq!(hash("--seed 7"), hash("--seed 7"));
     assert_ne!(hash("--seed 7"), hash("--seed 8"));
-    assert_ne!(hash("--scene one"), hash("--scene two"));
+    assert_ne!(hash("--scene humanoid"), hash("--scene boxing"));
 }
 
 #[test]
 fn a_model_of_ones_own_is_simulated() {
     let place = Place::new();
     place.write("ball.xml", BALL);
-    let told = figures(
-        &place,
-        "--model ball.xml --worlds 3 --seconds 2 --device cpu",
-    );
+    let told = figures(&place, "--model ball.xml --envs 3 --seconds 2 --device cpu");
     // It falls 0.1 m, and then lies.
     let mean = told["contacts_mean"].as_f64().unwrap();
     assert!((0.8..1.0).contains(&mean), "{told}");
@@ -61,7 +55,7 @@ fn a_model_of_ones_own_is_simulated() {
 fn clips_become_film_strips() {
     let place = Place::new();
     place.done("data synth --minutes 0.1 --out small.footwork --bvh clips");
-    let told = place.done("sim --clip clips --pictures strips");
+    let told = place.done("sim --clip clips --out strips");
     let files: Vec<&str> = told.out.lines().collect();
     assert!(
         !files.is_empty() && files.len().is_multiple_of(2),
@@ -83,23 +77,27 @@ fn what_cannot_be_simulated_is_said() {
     place.write("ball.xml", BALL);
     place.write("still.xml", STILL);
     for (words, code, part) in [
-        ("--worlds 0", 2, "--worlds must be from 1 to 1048576"),
-        ("--worlds -1", 2, "invalid value '-1'"),
-        ("--worlds 99999999999999999999", 2, "invalid value"),
+        ("--envs 0", 2, "--envs must be from 1 to 1048576"),
+        ("--envs -1", 2, "invalid value '-1'"),
+        ("--envs 99999999999999999999", 2, "invalid value"),
         ("--seed -1", 2, "invalid value '-1'"),
         ("--seconds -1", 2, "--seconds must be above zero"),
         ("--seconds 0", 2, "--seconds must be above zero"),
         ("--seconds nan", 2, "--seconds must be above zero"),
         ("--seconds 1e9", 2, "--seconds must be above zero"),
-        ("--deviation -1", 2, "--deviation must lie between"),
-        ("--deviation inf", 2, "--deviation must lie between"),
-        ("--scene three", 2, "possible values: one, two, box"),
-        ("--device gpux", 2, "similar value exists: 'gpu'"),
-        ("--worlds 18446744073709551615", 2, "from 1 to 1048576"),
+        ("--action-std -1", 2, "--action-std must lie between"),
+        ("--action-std inf", 2, "--action-std must lie between"),
         (
-            "--worlds 1000000 --device lavapipe",
+            "--scene three",
+            2,
+            "possible values: humanoid, boxing, punching-box",
+        ),
+        ("--device gpux", 2, "similar value exists: 'gpu'"),
+        ("--envs 18446744073709551615", 2, "from 1 to 1048576"),
+        (
+            "--envs 1000000 --device lavapipe",
             1,
-            "constraints of all worlds",
+            "constraints of all environments",
         ),
         (
             "--model still.xml",
@@ -109,16 +107,16 @@ fn what_cannot_be_simulated_is_said() {
         ("--model gone.xml", 1, "cannot read gone.xml"),
         ("--model .", 1, "cannot read ."),
         ("--model heavy.xml", 1, "heavy.xml, line 4"),
-        ("--model ball.xml --scene two", 2, "cannot be used with"),
-        ("--clip gone.bvh", 2, "  --pictures <FOLDER>\n"),
-        ("--pictures strips", 2, "  --clip <PATH>\n"),
-        ("--clip gone.bvh --pictures strips", 1, "gone.bvh"),
+        ("--model ball.xml --scene boxing", 2, "cannot be used with"),
+        ("--clip gone.bvh", 2, "  --out <FOLDER>\n"),
+        ("--out strips", 2, "  --clip <PATH>\n"),
+        ("--clip gone.bvh --out strips", 1, "gone.bvh"),
         (
-            "--clip gone.bvh --pictures strips --worlds 2",
+            "--clip gone.bvh --out strips --envs 2",
             2,
             "cannot be used with",
         ),
-        ("--clip heavy.xml --pictures strips", 1, "heavy.xml"),
+        ("--clip heavy.xml --out strips", 1, "heavy.xml"),
     ] {
         place.refused(&format!("sim {words}"), code, &[part]);
     }

@@ -2,7 +2,7 @@
 //! a face, the other box's face, clipped by the sides of the first, touches with its corners; across
 //! two edges, these touch in a point.
 
-use super::{ContactManifold, ContactPoint, Cuboid, MAX_POINTS, sign};
+use super::contact_point::{ContactManifold, ContactPoint, Cuboid, MAX_POINTS, sign};
 use glam::{Mat3, Vec3};
 
 /// Squared sine of the angle below which edges are parallel: the faces' axes suffice.

@@ -1,6 +1,6 @@
 //! Spheres and capsules with each other: where the points of their axes nearest to each other are.
 
-use super::{Capsule, ContactManifold, ContactPoint, sign};
+use super::contact_point::{Capsule, ContactManifold, ContactPoint, sign};
 use glam::Vec3;
 
 /// Squared sine of the angle below which two capsules lie side by side.
@@ -41,7 +41,7 @@ pub fn capsule_capsule(first: &Capsule, second: &Capsule, out: &mut ContactManif
     );
 }
 
-/// A touch at either end of the stretch that two parallel capsules have in common: each end is one of
+/// A point at either end of the stretch that two parallel capsules have in common: each end is one of
 /// the second's, or the first's where that is shorter.
 fn side_by_side(first: &Capsule, second: &Capsule, out: &mut ContactManifold) {
     let between = second.centre - first.centre;
@@ -61,7 +61,7 @@ fn side_by_side(first: &Capsule, second: &Capsule, out: &mut ContactManifold) {
     }
 }
 
-/// Of spheres `gap` apart, that of the first being at `centre`.
+/// The contact point of spheres `gap` apart, that of the first being at `centre`.
 fn point(centre: Vec3, direction: Vec3, gap: f32, [first, second]: [&Capsule; 2]) -> ContactPoint {
     let normal = direction.try_normalize().unwrap_or(Vec3::X);
     let distance = gap - first.radius - second.radius;

@@ -2,7 +2,7 @@
 //! its axis that is nearest to the box, and one at the end of the stretch of axis that runs on
 //! along the box from there, as MuJoCo has it.
 
-use super::{Capsule, ContactManifold, ContactPoint, Cuboid, sign};
+use super::contact_point::{Capsule, ContactManifold, ContactPoint, Cuboid, sign};
 use glam::{BVec3, Vec3};
 
 /// What is not nearer by this, m, is as near: rounding does not decide.
@@ -75,7 +75,7 @@ fn sphere_box(
     }
 }
 
-/// Of a point inside: the direction into the box from its nearest face, and minus its depth.
+/// The direction from the nearest face into the box, and minus the depth, of a point inside.
 fn shallowest(point: Vec3, half: Vec3) -> (Vec3, f32) {
     let depths = half - point.abs();
     let axis = depths.min_position();
@@ -195,7 +195,7 @@ fn positive(vector: Vec3) -> u32 {
     vector.cmpgt(Vec3::ZERO).bitmask()
 }
 
-/// Of the two directions across an edge the one with the larger part of the axis.
+/// That of the two directions across an edge which has the larger part of the axis.
 fn steeper(arm: Vec3, edge: u32) -> u32 {
     let edge = edge.trailing_zeros();
     let [one, other] = [(edge + 1) % 3, (edge + 2) % 3];

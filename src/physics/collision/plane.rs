@@ -1,12 +1,12 @@
 //! Whatever reaches below a plane.
 
-use super::{Capsule, ContactManifold, ContactPoint, Cuboid, WorldGeom, across};
+use super::contact_point::{Capsule, ContactManifold, ContactPoint, Cuboid, WorldGeom, across};
 use glam::{BVec3, Vec3};
 
 /// A box touches with its lowest corners, at most so many.
 const CORNERS: usize = 4;
 
-/// A touch for each end; the first tangent follows the capsule.
+/// A point for each end; the first tangent follows the capsule.
 pub fn capsule(plane: &WorldGeom, capsule: &Capsule, out: &mut ContactManifold) {
     let normal = plane.rotation.z_axis;
     let ends: &[f32] = match capsule.half > 0.0 {

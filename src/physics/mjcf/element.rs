@@ -99,14 +99,14 @@ impl<'a> Element<'a> {
             .ok_or_else(missing)
     }
 
-    /// One of several words, by its place among them.
+    /// One of several words, by its index among them.
     pub fn choice(&self, name: &str, words: &[&str]) -> Result<Option<usize>> {
         let Some(word) = self.word(name) else {
             return Ok(None);
         };
-        let place = words.iter().position(|known| *known == word);
+        let index = words.iter().position(|known| *known == word);
         let unknown = || self.wrong(name, &format!("it may be {}", words.join(" or ")));
-        place.ok_or_else(unknown).map(Some)
+        index.ok_or_else(unknown).map(Some)
     }
 
     /// Exactly `N` numbers.
@@ -230,7 +230,7 @@ fn attribute<'a>(node: Node<'a, 'a>, name: &str) -> Option<Attribute<'a, 'a>> {
     node.attributes().find(|attribute| attribute.name() == name)
 }
 
-/// The same words, or the same numbers.
+/// Whether two values are equal, as words or as numbers.
 fn same(a: &str, b: &str) -> bool {
     let words = |text: &str| -> Vec<String> {
         let number = |word: &str| {

@@ -66,7 +66,7 @@ pub fn ordered(geoms: &[Geom], pairs: Vec<[usize; 2]>) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// The shape's place in [`GeomShape`].
+/// The shape's index in [`GeomShape`].
 fn rank(geom: &Geom) -> usize {
     match geom.shape {
         GeomShape::Plane => 0,

@@ -1,4 +1,4 @@
-//! Where an element puts its frame: `pos`, and a turn in one of five ways.
+//! Where an element puts its frame: `pos`, and a rotation in one of five ways.
 
 use super::element::Element;
 use super::error::Result;
@@ -28,16 +28,16 @@ impl Mul for Frame {
 
 impl Frame {
     pub fn read(element: &Element, settings: &MjcfSettings) -> Result<Frame> {
-        let place = element.numbers("pos")?.unwrap_or_default();
+        let position = element.numbers("pos")?.unwrap_or_default();
         Ok(Frame {
-            position: DVec3::from_array(place),
-            rotation: turn(element, settings)?.unwrap_or(DQuat::IDENTITY),
+            position: DVec3::from_array(position),
+            rotation: orientation(element, settings)?.unwrap_or(DQuat::IDENTITY),
         })
     }
 }
 
-/// The turn that is given, if one is: the element's own way takes the place of a class's.
-pub fn turn(element: &Element, settings: &MjcfSettings) -> Result<Option<DQuat>> {
+/// The rotation that is given, if one is: the element's own way replaces that of a class.
+pub fn orientation(element: &Element, settings: &MjcfSettings) -> Result<Option<DQuat>> {
     element.innermost(|layer| one_turn(layer, settings))
 }
 
@@ -50,14 +50,14 @@ fn one_turn(element: &Element, settings: &MjcfSettings) -> Result<Option<DQuat>>
         return Err(element.wrong(second, "the orientation is given twice; keep one"));
     }
     let Some(way) = way else { return Ok(None) };
-    let turn = match way {
+    let rotation = match way {
         "quat" => quat(element),
         "axisangle" => axisangle(element, settings),
         "xyaxes" => xyaxes(element),
         "zaxis" => zaxis(element),
         _ => euler(element, settings),
     };
-    turn.map(Some)
+    rotation.map(Some)
 }
 
 fn quat(element: &Element) -> Result<DQuat> {
@@ -94,8 +94,9 @@ fn zaxis(element: &Element) -> Result<DQuat> {
 fn euler(element: &Element, settings: &MjcfSettings) -> Result<DQuat> {
     let angles = element.numbers::<3>("euler")?.unwrap_or_default();
     let [x, y, z] = angles.map(|angle| angle * settings.angle);
-    let turn = DQuat::from_rotation_x(x) * DQuat::from_rotation_y(y) * DQuat::from_rotation_z(z);
-    Ok(turn.normalize())
+    let rotation =
+        DQuat::from_rotation_x(x) * DQuat::from_rotation_y(y) * DQuat::from_rotation_z(z);
+    Ok(rotation.normalize())
 }
 
 pub fn unit(element: &Element, attribute: &str, vector: DVec3) -> Result<DVec3> {
@@ -105,7 +106,7 @@ pub fn unit(element: &Element, attribute: &str, vector: DVec3) -> Result<DVec3> 
     }
 }
 
-/// The smallest turn that takes z to a unit vector.
+/// The smallest rotation that takes z to a unit vector.
 pub fn from_z(to: DVec3) -> DQuat {
     let axis = DVec3::Z.cross(to);
     let (sine, cosine) = (axis.length(), to.z);

@@ -297,7 +297,7 @@ pub const POSITION: Grammar = Grammar {
     ..NOTHING
 };
 
-/// Of a motor the limits of its control are those that make the gear the largest torque.
+/// The limits of a motor's control are those that make the gear the largest torque.
 pub const MOTOR: Grammar = Grammar {
     read: &["name", "class", "joint", "gear"],
     ignored: &["group", "user", "ctrllimited"],

@@ -9,7 +9,7 @@ use super::settings::MjcfSettings;
 use crate::physics::model::{Joint, JointKind, SolverParams};
 use glam::{DVec3, Vec3};
 
-/// A joint whose place in the model is not known yet.
+/// A joint whose index in the model is not known yet.
 pub struct Jointed<'a> {
     pub element: Element<'a>,
     pub joint: Joint,

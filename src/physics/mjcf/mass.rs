@@ -3,7 +3,7 @@
 
 use super::element::Element;
 use super::error::Result;
-use super::frame::{Frame, turn};
+use super::frame::{Frame, orientation};
 use super::settings::MjcfSettings;
 use super::shape::GeomShape64;
 use glam::{DMat3, DVec3};
@@ -42,11 +42,11 @@ impl Mass {
 
     /// The same, seen from around the frame it is in.
     pub fn seen_from(self, frame: &Frame) -> Mass {
-        let turn = DMat3::from_quat(frame.rotation);
+        let rotation = DMat3::from_quat(frame.rotation);
         Mass {
             mass: self.mass,
             com: frame.position + frame.rotation * self.com,
-            inertia: turn * self.inertia * turn.transpose(),
+            inertia: rotation * self.inertia * rotation.transpose(),
         }
     }
 
@@ -115,7 +115,7 @@ fn moments(element: &Element, settings: &MjcfSettings) -> Result<DMat3> {
             DMat3::from_diagonal(DVec3::from_array(moments)),
         ),
         (None, Some([xx, yy, zz, xy, xz, yz])) => {
-            if turn(element, settings)?.is_some() {
+            if orientation(element, settings)?.is_some() {
                 return Err(element.wrong(
                     "fullinertia",
                     "it says how the inertia lies; remove the orientation",

@@ -12,7 +12,7 @@ use super::settings::MjcfSettings;
 use crate::physics::model::{Body, Dof, GeomShape, JointKind, KinematicTree, Model};
 use std::collections::{HashMap, HashSet};
 
-/// Of bodies, of joints and of geoms: more are a mistake, or an attack.
+/// Bodies, joints and geoms at most, each: more are a mistake, or an attack.
 const MOST: usize = 200;
 
 /// A body of the file, or the world, which is the first. What cannot move is part of the world, and
@@ -21,12 +21,12 @@ pub struct BodyElement<'a> {
     pub element: Element<'a>,
     pub parent: usize,
     pub body: Option<usize>,
-    /// The place with the joints that move this one.
+    /// The element with the joints that move this one.
     pub weld: usize,
     pub mass: Mass,
     /// Its frame seen from its body's or, of what cannot move, from the world's.
     frame: Frame,
-    /// Of what is in it.
+    /// Mass of what is in it.
     class: Option<usize>,
 }
 
@@ -35,7 +35,7 @@ pub struct WorldBuilder<'a> {
     pub classes: &'a Classes<'a>,
     pub model: Model,
     pub elements: Vec<BodyElement<'a>>,
-    /// The place of each of the model's geoms, and what it may touch.
+    /// The element of each of the model's geoms, and what it may touch.
     pub touching: Vec<(usize, Bits)>,
     /// The element of each of the model's joints, and its spring and damper.
     pub joints: Vec<(Element<'a>, [f32; 2])>,
@@ -63,8 +63,8 @@ impl<'a> WorldBuilder<'a> {
         // In the file's order parents come before their children.
         for element in tops.iter().flat_map(|top| top.nested("body")) {
             let parent = element.parent().and_then(|parent| known.get(&parent));
-            let place = world.body(&element, parent.copied().unwrap_or(0))?;
-            known.insert(element.id(), place);
+            let index = world.body(&element, parent.copied().unwrap_or(0))?;
+            known.insert(element.id(), index);
         }
         world.solve_lt()?;
         Ok(world)
@@ -264,20 +264,20 @@ impl<'a> WorldBuilder<'a> {
 
     /// Hands the masses to the model, and refuses what would move without any.
     fn solve_lt(&mut self) -> Result<()> {
-        for (index, place) in self.elements.iter().enumerate() {
-            let Some(body) = place.body else { continue };
+        for (index, known) in self.elements.iter().enumerate() {
+            let Some(body) = known.body else { continue };
             let mut welded = self.elements.iter().filter(|other| other.weld == index);
-            if place.weld == index && !welded.any(|other| other.mass.can_move()) {
+            if known.weld == index && !welded.any(|other| other.mass.can_move()) {
                 let problem = "moves but has no mass; give it a geom, or <inertial>";
-                return Err(place.element.error(problem));
+                return Err(known.element.error(problem));
             }
             let body = &mut self.model.bodies[body];
-            body.mass = place.mass.mass as f32;
-            body.com = place.mass.com.as_vec3();
-            body.inertia = place.mass.inertia.as_mat3();
+            body.mass = known.mass.mass as f32;
+            body.com = known.mass.com.as_vec3();
+            body.inertia = known.mass.inertia.as_mat3();
             if !(body.mass.is_finite() && body.inertia.is_finite()) {
                 let problem = "is too heavy to be reckoned with; check its sizes and density";
-                return Err(place.element.error(problem));
+                return Err(known.element.error(problem));
             }
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! Which joints of a skeleton are which of a person's, and which way its axes point.
 
-use super::{Result, RetargetError};
+use super::error::{Result, RetargetError};
 use crate::motion::roles::Roles;
 use crate::motion::skeleton::Skeleton;
 use glam::{Mat3, Quat, Vec3};
@@ -25,7 +25,7 @@ pub struct Foot {
     pub toe: Vec3,
 }
 
-/// Of pairs, the right one is first.
+/// The joints of a skeleton by what they are to a person; of pairs, the right one is first.
 pub struct Anatomy {
     pub hips: usize,
     /// Whence both arms branch off.

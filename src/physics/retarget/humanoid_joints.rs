@@ -1,7 +1,7 @@
 //! The humanoid posed: from what its parts should do in the world to the positions of its joints.
 
+use super::error::{Result, RetargetError};
 use super::limb::Bend;
-use super::{Result, RetargetError, TargetPose};
 use crate::physics::drive::rotation_vector;
 use crate::physics::kinematics::{kinematics, store};
 use crate::physics::model::{Geom, Joint, JointKind, Model};
@@ -12,13 +12,25 @@ use glam::{Mat3, Quat, Vec3};
 /// Share of the frames whose feet may be below the ground.
 const BELOW: f32 = 0.01;
 
+/// What a frame asks of the humanoid, in the world; in pairs, the right one is first.
+pub struct TargetPose {
+    /// Between the hip joints, m.
+    pub hips: Vec3,
+    pub pelvis: Quat,
+    pub torso: Quat,
+    pub head: Quat,
+    pub arms: [Bend; 2],
+    pub legs: [Bend; 2],
+    pub feet: [Quat; 2],
+}
+
 /// Two bodies with a hinge between them.
 struct Limb<'a> {
     ball: &'a Joint,
     hinge: &'a Joint,
 }
 
-/// The joints of a humanoid. Of pairs, the right one is first.
+/// The joints of a humanoid; in pairs, the right one is first.
 pub struct HumanoidJoints<'a> {
     model: &'a Model,
     pelvis: &'a Joint,

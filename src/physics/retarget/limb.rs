@@ -1,10 +1,10 @@
 //! How an arm or a leg is held: which way its upper bone points, about which axis and how far it bends.
 
-use super::Frame;
 use super::anatomy::Limb;
+use super::recorded_frame::RecordedFrame;
 use glam::{Quat, Vec3};
 
-/// Of one frame, in the world.
+/// The bend of a limb in one frame, in the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Bend {
     /// Direction of the upper bone.
@@ -32,7 +32,11 @@ const STRAIGHT: f32 = 0.3;
 impl Hinge {
     /// The mean axis of the clip's bends. A limb that never bends has the one that `rest`, the direction
     /// in which the limb hangs and the axis that its hinge has then, turns to on the shortest way.
-    pub fn of(limb: Limb, frames: &[Frame], rest: &impl Fn(&Frame) -> [Vec3; 2]) -> Hinge {
+    pub fn of(
+        limb: Limb,
+        frames: &[RecordedFrame],
+        rest: &impl Fn(&RecordedFrame) -> [Vec3; 2],
+    ) -> Hinge {
         let seen = frames.iter().map(|frame| {
             let [down, hinge] = rest(frame);
             let [upper, lower] = limb.bones(frame);
@@ -50,7 +54,7 @@ impl Hinge {
 
     /// The bend that brings the lower bone where it was recorded. The straighter a limb, the more its
     /// hinge is where it is found over the whole clip, so that it never jumps.
-    pub fn bend(&self, frame: &Frame) -> Bend {
+    pub fn bend(&self, frame: &RecordedFrame) -> Bend {
         let [bone, lower] = self.limb.bones(frame);
         let usual = frame.rotation[self.limb.top] * self.axis;
         let across = bone.cross(lower);
@@ -69,7 +73,7 @@ impl Hinge {
 
 impl Limb {
     /// Directions of the bones in the world.
-    fn bones(&self, frame: &Frame) -> [Vec3; 2] {
+    fn bones(&self, frame: &RecordedFrame) -> [Vec3; 2] {
         [
             frame.rotation[self.top] * self.upper,
             frame.rotation[self.middle] * self.lower,

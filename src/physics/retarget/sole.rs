@@ -1,7 +1,7 @@
 //! How a foot is held, whatever its bones say of the sole below them.
 
-use super::Frame;
 use super::anatomy::Foot;
+use super::recorded_frame::RecordedFrame;
 use glam::{Mat3, Quat, Vec3};
 
 /// A foot whose sole has been found.
@@ -17,9 +17,9 @@ const STANDING: usize = 10;
 
 impl Sole {
     /// What points up in the foot's frame while the ankle is lowest is across the sole.
-    pub fn of(foot: Foot, frames: &[Frame]) -> Sole {
-        let height = |frame: &&Frame| frame.at[foot.ankle].z;
-        let mut low: Vec<&Frame> = frames.iter().collect();
+    pub fn of(foot: Foot, frames: &[RecordedFrame]) -> Sole {
+        let height = |frame: &&RecordedFrame| frame.at[foot.ankle].z;
+        let mut low: Vec<&RecordedFrame> = frames.iter().collect();
         low.sort_by(|a, b| height(a).total_cmp(&height(b)));
         low.truncate(frames.len().div_ceil(STANDING));
         let up: Vec3 = low
@@ -38,7 +38,7 @@ impl Sole {
     }
 
     /// Takes a standing foot to where it is, its toe along x.
-    pub fn rotation(&self, frame: &Frame) -> Quat {
+    pub fn rotation(&self, frame: &RecordedFrame) -> Quat {
         frame.rotation[self.foot.ankle] * self.axes
     }
 }
