@@ -1,6 +1,6 @@
 //! How fast multiplying and adding can be done. Shader: `shaders/bench/arithmetic.wgsl`.
 
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use multiversion::multiversion;
 use rayon::prelude::*;

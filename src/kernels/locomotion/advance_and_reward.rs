@@ -2,7 +2,7 @@
 
 use super::locomotion_layout::{state_f32, state_u32};
 use crate::kernels::termination;
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::database::RootMotion;
 use crate::motion::features::FRAMES_PER_STEP;

@@ -2,7 +2,7 @@
 //! Shader: `shaders/world/query.wgsl`.
 
 use super::locomotion_layout::state_u32;
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
 

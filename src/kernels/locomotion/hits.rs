@@ -3,7 +3,7 @@
 
 use super::locomotion_layout::{boxes, state_f32, state_u32};
 use super::obstacles::inside;
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::features::TRAJECTORY_DIM;
 use crate::motion::character_frame::to_world;

@@ -2,7 +2,7 @@
 
 use super::locomotion_layout::{VELOCITY_DIM, boxes};
 use super::obstacles::bounce;
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use rayon::prelude::*;
 

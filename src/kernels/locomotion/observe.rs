@@ -1,7 +1,7 @@
 //! What the policy sees. Shader: `shaders/world/observe.wgsl`.
 
 use super::locomotion_layout::{CELLS, FULL, BASE_OBS_DIM, TARGET_SCALE, MAP_WORDS, MAPS, ROW, state_f32, state_u32};
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::features::{POSE_DIM, ROW_STRIDE};
 use crate::motion::character_frame::to_local;

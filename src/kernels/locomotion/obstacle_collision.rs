@@ -3,7 +3,7 @@
 
 use super::locomotion_layout::{VELOCITY_DIM, boxes, state_f32, state_u32};
 use super::obstacles::{bounce, inside};
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::features::FRAMES_PER_STEP;
 use crate::motion::character_frame::{to_local, to_world};

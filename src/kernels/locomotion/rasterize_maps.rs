@@ -2,7 +2,7 @@
 
 use super::locomotion_layout::{VELOCITY_DIM, CELL, CELLS, FULL, MAP_WORDS, ROW, boxes, state_f32, state_u32};
 use super::obstacles::{bounce, depth};
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::character_frame::to_world;
 use multiversion::multiversion;

@@ -4,7 +4,7 @@ use super::hits::obstructed;
 use super::locomotion_layout::{boxes, state_f32, state_u32};
 use crate::kernels::termination;
 use crate::kernels::rng::{gaussian, index_below, random4, uniform01};
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 
 crate::shader_params! {

@@ -3,7 +3,7 @@
 use super::locomotion_layout::{VELOCITY_DIM, boxes};
 use crate::kernels::termination;
 use crate::kernels::rng::{gaussian, random4, uniform01};
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 
 crate::shader_params! {

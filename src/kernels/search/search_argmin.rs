@@ -1,7 +1,7 @@
 //! The nearest of what was found for a query. Shader: `shaders/search/search_argmin.wgsl`.
 
 use super::search_index::LANES;
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 
 crate::shader_params! {

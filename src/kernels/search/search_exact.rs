@@ -1,6 +1,6 @@
 //! The nearest candidate of every query. Shader: `shaders/search/search_exact.wgsl`.
 
-use crate::gpu::kernel::groups;
+use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
 use crate::motion::features::{FEATURE_DIM, ROW_STRIDE};
 

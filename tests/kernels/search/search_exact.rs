@@ -5,7 +5,7 @@
 use crate::checked;
 use crate::inputs::{Draw, POISON, POISON_WHOLE, gpu};
 use bytemuck::cast_slice;
-use footwork::gpu::kernel::groups;
+use footwork::gpu::groups;
 use footwork::gpu::{Buffer, shader};
 use footwork::kernels::search::{search_exact, search_score_lanes};
 use footwork::motion::features::{FEATURE_DIM, ROW_STRIDE};
