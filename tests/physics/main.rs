@@ -6,6 +6,8 @@ mod contacts;
 mod dynamics;
 mod golden;
 mod laws;
+#[path = "../support/mocap.rs"]
+mod mocap;
 mod model;
 mod retarget;
 mod statistics;

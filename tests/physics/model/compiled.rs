@@ -2,14 +2,13 @@
 
 use super::parse;
 use crate::golden;
+use crate::mocap::recordings;
 use footwork::physics::collision::PairKind;
 use footwork::physics::humanoid::{BODIES, humanoid, punching_box};
 use footwork::physics::mjcf;
 use footwork::physics::model::{Drive, GeomShape, JointKind, Model, SolverParams};
 use glam::{Mat3, Quat, Vec3};
 use serde_json::Value;
-use std::io::Write;
-use std::path::{Path, PathBuf};
 
 /// Of the largest number beside it: single precision.
 const CLOSE: f32 = 2e-6;
@@ -19,20 +18,6 @@ const LOOSE: f32 = 1e-3;
 
 fn golden() -> Value {
     golden::json("model.json")
-}
-
-/// The reference's humanoid, if there is one.
-fn reference() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/mocap");
-    let folder = std::env::var_os("FOOTWORK_MOCAP").map_or(beside, PathBuf::from);
-    let path = folder.join("humanoid/ase/amp_humanoid.xml");
-    if path.is_file() {
-        return Some(path);
-    }
-    // Not through `eprintln`, which the test runner keeps to itself.
-    let line = format!("SKIPPED: no {} (set FOOTWORK_MOCAP)\n", path.display());
-    std::io::stderr().write_all(line.as_bytes()).unwrap();
-    None
 }
 
 #[test]
@@ -57,7 +42,9 @@ fn random_models_are_what_mujoco_makes_of_them() {
 
 #[test]
 fn the_reference_humanoid_is_read_and_its_motors_are_drives() {
-    let Some(path) = reference() else { return };
+    let Some(path) = recordings("humanoid/ase/amp_humanoid.xml") else {
+        return;
+    };
     let mut model = mjcf::read(&path).unwrap();
     let drive = |name: &str| {
         let joint = model.joints.iter().find(|joint| joint.name == name);

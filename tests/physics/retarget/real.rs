@@ -1,6 +1,7 @@
 //! Real recordings, where there are some: all of them, of seven skeletons.
 
 use super::{Bodies, LEG, UPRIGHT, max_speed, percentile};
+use crate::mocap::recordings;
 use footwork::motion::bvh;
 use footwork::motion::import::{ImportOptions, import};
 use footwork::motion::roles::Roles;
@@ -9,28 +10,7 @@ use footwork::physics::humanoid::humanoid;
 use footwork::physics::motion_library::MotionLibrary;
 use footwork::physics::retarget::retarget;
 use glam::Vec3;
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Once};
-
-/// The folder of real recordings, if there is one.
-fn recordings() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/mocap");
-    let folder = std::env::var_os("FOOTWORK_MOCAP").map_or(beside, PathBuf::from);
-    if folder.join("lafan1").is_dir() {
-        return Some(folder);
-    }
-    // Said once, and not through `eprintln`, which the test runner keeps to itself.
-    static SAY: Once = Once::new();
-    SAY.call_once(|| {
-        let folder = folder.display();
-        let line = format!("SKIPPED: no recordings in {folder} (set FOOTWORK_MOCAP)\n");
-        std::io::stderr()
-            .write_all(line.as_bytes())
-            .expect("standard error");
-    });
-    None
-}
+use std::sync::Arc;
 
 /// Folders, and how far their ankles and wrists may be from where they were recorded, as seen from hips
 /// and shoulders, in 95 % of frames, cm: bones of other proportions than the humanoid's lead elsewhere.
@@ -59,7 +39,7 @@ const T_POSES: [&str; 3] = [
 
 #[test]
 fn real_recordings_move_the_humanoid() {
-    let Some(mocap) = recordings() else { return };
+    let Some(mocap) = recordings("") else { return };
     let model = Arc::new(humanoid());
     for (folder, ankles, wrists) in FOLDERS {
         let import = import(&mocap.join(folder), &ImportOptions::default()).expect("recordings");
@@ -127,7 +107,7 @@ fn real_recordings_move_the_humanoid() {
 
 #[test]
 fn real_t_poses_have_horizontal_arms() {
-    let Some(mocap) = recordings() else { return };
+    let Some(mocap) = recordings("") else { return };
     let model = humanoid();
     for file in T_POSES {
         let recording = bvh::read(&mocap.join(file)).expect("a recording");
