@@ -20,9 +20,10 @@ use rayon::prelude::*;
 
 /// Rows evaluated together.
 const FORWARD_ROWS: usize = 64;
-/// Rows taken through a narrow network and back together, and through one with wide layers.
+/// Rows taken through a narrow network and back together.
 const CHUNK_ROWS: usize = 32;
-const WIDE_CHUNK_ROWS: usize = 128;
+/// The fewest and the most rows taken through a network with wide layers: a quarter of a minibatch.
+const WIDE_CHUNK_ROWS: [usize; 2] = [64, 256];
 /// Splits of a batch of which each has gradients of its own: more would spend more time adding them.
 const GRAD_SPLITS: usize = 8;
 /// Rows of which wide layers keep what they see until their gradients are summed.
@@ -103,16 +104,11 @@ pub fn forward(network: &Network, flat: &[f32], observations: &[f32], out: &mut 
     let (width, outputs) = (network.observation().dim(), network.outputs());
     let chunks = observations.par_chunks(FORWARD_ROWS * width);
     let chunks = chunks.zip(out.par_chunks_mut(FORWARD_ROWS * outputs));
-    chunks.for_each(|(observations, out)| {
+    chunks.for_each_init(Pass::default, |pass, (observations, out)| {
         let rows: Vec<&[f32]> = observations.chunks_exact(width).collect();
-        let (_, outputs) = Pass::new(network, flat, &rows);
-        out.copy_from_slice(&outputs);
+        pass.forward(network, flat, &rows);
+        out.copy_from_slice(&pass.outputs());
     });
-}
-
-fn chunk_rows(network: &Network) -> usize {
-    let wide = network.layers().iter().any(|params| is_wide(&params.layer));
-    if wide { WIDE_CHUNK_ROWS } else { CHUNK_ROWS }
 }
 
 fn add(sums: &mut [f32], values: &[f32]) {
@@ -142,11 +138,13 @@ struct Split {
 impl Minibatch<'_> {
     /// Writes the gradient of a network's parameters. Returns the extras.
     fn gradient(&self, number: usize, network: &Network, gradient: &mut [f32]) -> Vec<f32> {
-        let chunk = chunk_rows(network);
-        let (block, split) = match chunk {
-            WIDE_CHUNK_ROWS => (BLOCK_ROWS, chunk),
-            _ => (self.rows.len(), self.rows.len().div_ceil(GRAD_SPLITS)),
+        let wide = network.layers().iter().any(|params| is_wide(&params.layer));
+        let [fewest, most] = WIDE_CHUNK_ROWS;
+        let (block, split) = match wide {
+            true => (BLOCK_ROWS, (self.rows.len() / 4).clamp(fewest, most)),
+            false => (self.rows.len(), self.rows.len().div_ceil(GRAD_SPLITS)),
         };
+        let chunk = if wide { split } else { CHUNK_ROWS };
         let layers = network.layers().iter();
         let transposed = layers.map(|params| layers::transpose(params, self.flat));
         let transposed: Vec<Vec<f32>> = transposed.collect();
@@ -178,8 +176,10 @@ impl Minibatch<'_> {
             extras: vec![0.0; self.extras],
             wide: Vec::new(),
         };
+        let mut pass = Pass::default();
         for rows in rows.chunks(chunk) {
-            let (pass, mut outputs) = Pass::new(network, self.flat, rows);
+            pass.forward(network, self.flat, rows);
+            let mut outputs = pass.outputs();
             let batch = HostBatch {
                 network: number,
                 rows,
@@ -188,8 +188,8 @@ impl Minibatch<'_> {
             self.objective
                 .loss_gradient(&batch, &mut outputs, &mut split.extras);
             let wide = pass.back(network, self.flat, transposed, outputs, &mut split.narrow);
-            if chunk == WIDE_CHUNK_ROWS {
-                split.wide.push((pass, wide));
+            if wide.iter().any(|gradient| !gradient.is_empty()) {
+                split.wide.push((std::mem::take(&mut pass), wide));
             }
         }
         split
@@ -239,30 +239,38 @@ fn sum_gradients(network: &Network, splits: &[Split], gradient: &mut [f32]) {
 }
 
 /// What some rows left on their way through a network.
+#[derive(Default)]
 struct Pass {
-    /// Of every layer, `[rows][..]`.
+    /// Of every layer, `[rows][..]`; the outputs last.
     inputs: Vec<Vec<f32>>,
     rows: usize,
 }
 
 impl Pass {
-    /// Takes rows that begin with observations through a network. Returns the outputs, too.
-    fn new(network: &Network, flat: &[f32], rows: &[&[f32]]) -> (Pass, Vec<f32>) {
+    /// Takes rows that begin with observations through a network.
+    fn forward(&mut self, network: &Network, flat: &[f32], rows: &[&[f32]]) {
         let (spec, encoder) = (network.observation(), network.encoder_len());
-        let mut inputs: Vec<Vec<f32>> = Vec::with_capacity(network.layers().len());
-        let mut values: Vec<f32> = Vec::new();
+        self.rows = rows.len();
+        self.inputs
+            .resize_with(network.layers().len() + 1, Vec::new);
+        self.inputs[0].clear();
         let begin = if encoder > 0 { spec.vector } else { 0 };
-        rows.iter()
-            .for_each(|row| values.extend_from_slice(&row[begin..spec.dim()]));
-        for (number, params) in network.layers().iter().enumerate() {
-            if number == encoder && encoder > 0 {
-                values = join(rows, spec.vector, &values);
-            }
-            let output = layers::forward(params, flat, &values, rows.len());
-            inputs.push(std::mem::replace(&mut values, output));
+        for row in rows {
+            self.inputs[0].extend_from_slice(&row[begin..spec.dim()]);
         }
-        let rows = rows.len();
-        (Pass { inputs, rows }, values)
+        for (number, params) in network.layers().iter().enumerate() {
+            let (inputs, outputs) = self.inputs.split_at_mut(number + 1);
+            let output = &mut outputs[0];
+            layers::forward(params, flat, &inputs[number], rows.len(), output);
+            if number + 1 == encoder {
+                *output = join(rows, spec.vector, output);
+            }
+        }
+    }
+
+    /// Takes the outputs out.
+    fn outputs(&mut self) -> Vec<f32> {
+        self.inputs.pop().unwrap_or_default()
     }
 
     /// Adds the gradients of the narrow layers to `narrow`, given that of the outputs. Returns the gradients
@@ -286,7 +294,9 @@ impl Pass {
                 layers::add_gradient(&params.layer, input, &gradient, sums);
             }
             let Some(below) = number.checked_sub(1) else {
-                wide[number] = gradient;
+                if is_wide(&params.layer) {
+                    wide[number] = gradient;
+                }
                 break;
             };
             let transposed = &transposed[number];
@@ -301,7 +311,10 @@ impl Pass {
             } else {
                 layers::activation_backward(kind, &mut next, input);
             }
-            wide[number] = std::mem::replace(&mut gradient, next);
+            let above = std::mem::replace(&mut gradient, next);
+            if is_wide(&params.layer) {
+                wide[number] = above;
+            }
         }
         wide
     }

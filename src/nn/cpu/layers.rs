@@ -15,15 +15,21 @@ pub fn is_wide(layer: &Layer) -> bool {
     layer.is_dense() && layer.patch().min(layer.filters()) >= WIDE
 }
 
-/// Outputs `[rows][height][width][filters]` from inputs `[rows][height][width][channels]`.
-pub fn forward(params: &LayerParams, flat: &[f32], input: &[f32], rows: usize) -> Vec<f32> {
+/// Puts outputs `[rows][height][width][filters]` in the place of `output`, from inputs `[rows][height][width][channels]`.
+pub fn forward(
+    params: &LayerParams,
+    flat: &[f32],
+    input: &[f32],
+    rows: usize,
+    output: &mut Vec<f32>,
+) {
     let layer = &params.layer;
     let (weights, biases) = (&flat[params.weights()], &flat[params.biases()]);
-    let mut output = Vec::new();
+    output.clear();
     if is_wide(layer) {
-        output = biases.repeat(rows);
+        (0..rows).for_each(|_| output.extend_from_slice(biases));
         add_product(
-            &mut output,
+            output,
             Matrix::rows(input, layer.patch()),
             Matrix::rows(weights, layer.filters()),
         );
@@ -44,14 +50,13 @@ pub fn forward(params: &LayerParams, flat: &[f32], input: &[f32], rows: usize) -
                 Activation::Relu => 0.0,
                 Activation::Tanh | Activation::Identity => f32::NEG_INFINITY,
             },
-            output: &mut output,
+            output,
         };
         microkernel(&mut kernel, offsets.len(), layer.filters());
     }
     if layer.activation() == Activation::Tanh {
-        tanh(&mut output);
+        tanh(output);
     }
-    output
 }
 
 /// Makes the gradient with respect to sums from that with respect to the `activations` they became.
