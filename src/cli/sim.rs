@@ -3,13 +3,13 @@
 use super::Usage;
 use anyhow::Result;
 use clap::{Args, ValueEnum};
+use footwork::env::humanoid::batch::{self, SimulatorBatchConfig};
+use footwork::gpu::{Choice, Device};
 use footwork::physics::mjcf;
 use footwork::physics::model::Model;
-use footwork::physics::simulator::{STEP_RATE, SUBSTEPS, SolverOptions};
 use footwork::physics::scenes;
-use footwork::gpu::{Choice, Device};
+use footwork::physics::simulator::{STEP_RATE, SUBSTEPS, SolverOptions};
 use footwork::report::table::table;
-use footwork::env::humanoid::batch::{self, SimulatorBatchConfig};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::path::PathBuf;

@@ -57,13 +57,7 @@ impl Gpu {
     }
 
     /// Never called.
-    pub fn launch<P: Pod>(
-        &self,
-        _: &'static Shader,
-        _: [u32; 3],
-        _: &[&dyn Argument],
-        _: &P,
-    ) {
+    pub fn launch<P: Pod>(&self, _: &'static Shader, _: [u32; 3], _: &[&dyn Argument], _: &P) {
         match self.never {}
     }
 }

@@ -1,7 +1,7 @@
 //! Arrays in host memory or on a GPU, behind one type.
 
-use super::device::Device;
 use super::Buffer;
+use super::device::Device;
 use bytemuck::Pod;
 use std::ops::Range;
 

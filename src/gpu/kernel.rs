@@ -1,8 +1,8 @@
 //! The only launch: a validated WGSL shader on burn's own stream, so that kernels and tensor
 //! operations run in program order on one queue without copies or waits.
 
-use super::buffer::Argument;
 use super::adapter::Gpu;
+use super::buffer::Argument;
 use super::shader::Shader;
 pub use super::shader::groups;
 use bytemuck::Pod;

@@ -1,7 +1,7 @@
 //! The only bridge between buffers and burn's tensors. Nothing is copied.
 
-use super::buffer::Buffer;
 use super::Gpu;
+use super::buffer::Buffer;
 use burn::backend::Wgpu;
 use burn::tensor::{DType, Shape, Tensor};
 use burn_cubecl::kernel::into_contiguous;

@@ -36,7 +36,11 @@ pub fn launch(
     samples: &Buffer<f32>,
     params: &Params,
 ) {
-    let groups = [params.samples.min(GROUPS), params.samples.div_ceil(GROUPS), 1];
+    let groups = [
+        params.samples.min(GROUPS),
+        params.samples.div_ceil(GROUPS),
+        1,
+    ];
     gpu.launch(
         &shader::GATHER_SAMPLES,
         groups,

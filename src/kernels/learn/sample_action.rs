@@ -53,12 +53,7 @@ pub fn twin(
         let at = (first + row as usize) * width;
         for i in 0..width {
             let stream = NOISE + i as u32;
-            let bits = random4(
-                params.seed,
-                params.first + row,
-                params.step_counter,
-                stream,
-            );
+            let bits = random4(params.seed, params.first + row, params.step_counter, stream);
             let noise = gaussian(bits);
             action[at + i] = mean[at + i] + std[i] * noise;
             sum -= 0.5 * noise * noise + log_std[i] + HALF_LOG_TAU;

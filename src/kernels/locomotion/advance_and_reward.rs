@@ -1,12 +1,12 @@
 //! Plays six frames, rewards and ends. Shader: `shaders/world/step.wgsl`.
 
 use super::locomotion_layout::{state_f32, state_u32};
-use crate::kernels::termination;
 use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
+use crate::kernels::termination;
+use crate::motion::character_frame::to_world;
 use crate::motion::database::RootMotion;
 use crate::motion::features::FRAMES_PER_STEP;
-use crate::motion::character_frame::to_world;
 
 crate::shader_params! {
     pub struct Params for advance_and_reward {
@@ -44,7 +44,15 @@ pub fn launch(
     gpu.launch(
         &shader::ADVANCE_AND_REWARD,
         groups,
-        &[candidates, matched, motion, state_f32, state_u32, reward, termination],
+        &[
+            candidates,
+            matched,
+            motion,
+            state_f32,
+            state_u32,
+            reward,
+            termination,
+        ],
         params,
     );
 }
@@ -64,7 +72,10 @@ pub fn twin(
     for env in 0..envs {
         let played = &motion[matched[env] as usize];
         let r = |field: usize| field * envs + env;
-        let heading = [state_f32[r(state_f32::HEADING_X)], state_f32[r(state_f32::HEADING_Z)]];
+        let heading = [
+            state_f32[r(state_f32::HEADING_X)],
+            state_f32[r(state_f32::HEADING_Z)],
+        ];
         let moved = to_world(played.moved, heading);
         let turned = to_world(played.turned, heading);
         let length = (turned[0] * turned[0] + turned[1] * turned[1]).sqrt();
@@ -79,7 +90,10 @@ pub fn twin(
 
         let age = state_u32[r(state_u32::EPISODE_STEP)] + 1;
         state_u32[r(state_u32::EPISODE_STEP)] = age;
-        let goal = [state_f32[r(state_f32::TARGET_X)], state_f32[r(state_f32::TARGET_Z)]];
+        let goal = [
+            state_f32[r(state_f32::TARGET_X)],
+            state_f32[r(state_f32::TARGET_Z)],
+        ];
         let from = |place: [f32; 2]| {
             let (dx, dz) = (goal[0] - place[0], goal[1] - place[1]);
             (dx * dx + dz * dz).sqrt()

@@ -5,8 +5,8 @@ use super::locomotion_layout::{boxes, state_f32, state_u32};
 use super::obstacles::inside;
 use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
-use crate::motion::features::TRAJECTORY_DIM;
 use crate::motion::character_frame::to_world;
+use crate::motion::features::TRAJECTORY_DIM;
 use rayon::prelude::*;
 
 crate::shader_params! {
@@ -54,8 +54,11 @@ pub fn twin(
         let heading = [r(state_f32::HEADING_X), r(state_f32::HEADING_Z)];
         let boxes = &boxes[env * boxes::FIELDS * count..][..boxes::FIELDS * count];
         let hit = |k: &usize| {
-            let asked = [4 * k, 4 * k + 1]
-                .map(|i| action[params.action_at as usize + env * TRAJECTORY_DIM + i] / normal[TRAJECTORY_DIM + i] + normal[i]);
+            let asked = [4 * k, 4 * k + 1].map(|i| {
+                action[params.action_at as usize + env * TRAJECTORY_DIM + i]
+                    / normal[TRAJECTORY_DIM + i]
+                    + normal[i]
+            });
             let moved = to_world(asked, heading);
             let point = [r(state_f32::X) + moved[0], r(state_f32::Z) + moved[1]];
             obstructed(point, boxes, count)

@@ -82,22 +82,45 @@ pub const VELOCITY_DIM: usize = 2;
 const _: () = {
     assert!(wgsl::POSE_DIM as usize == POSE_DIM && wgsl::TRAJECTORY_DIM as usize == TRAJECTORY_DIM);
     assert!(wgsl::FEATURE_DIM as usize == FEATURE_DIM && wgsl::QUADS as usize * 4 == ROW_STRIDE);
-    assert!(wgsl::BASE_OBS_DIM as usize == BASE_OBS_DIM && wgsl::FRAMES_PER_STEP as usize == FRAMES_PER_STEP);
+    assert!(
+        wgsl::BASE_OBS_DIM as usize == BASE_OBS_DIM
+            && wgsl::FRAMES_PER_STEP as usize == FRAMES_PER_STEP
+    );
     assert!(wgsl::CELLS as usize == CELLS && wgsl::MAPS as usize == MAPS);
     assert!(wgsl::ROW as usize == ROW);
     assert!(wgsl::X as usize == state_f32::X && wgsl::Z as usize == state_f32::Z);
     assert!(
-        wgsl::HEADING_X as usize == state_f32::HEADING_X && wgsl::HEADING_Z as usize == state_f32::HEADING_Z
+        wgsl::HEADING_X as usize == state_f32::HEADING_X
+            && wgsl::HEADING_Z as usize == state_f32::HEADING_Z
     );
-    assert!(wgsl::TARGET_X as usize == state_f32::TARGET_X && wgsl::TARGET_Z as usize == state_f32::TARGET_Z);
-    assert!(wgsl::RETURN as usize == state_f32::RETURN && wgsl::TRAVELLED as usize == state_f32::TRAVELLED);
-    assert!(wgsl::RETURNS as usize == state_f32::RETURNS && wgsl::STATE_F32_FIELDS as usize == state_f32::FIELDS);
-    assert!(wgsl::FRAME as usize == state_u32::FRAME && wgsl::EPISODE_STEP as usize == state_u32::EPISODE_STEP);
     assert!(
-        wgsl::EPISODES as usize == state_u32::EPISODES && wgsl::SUCCESSES as usize == state_u32::SUCCESSES
+        wgsl::TARGET_X as usize == state_f32::TARGET_X
+            && wgsl::TARGET_Z as usize == state_f32::TARGET_Z
     );
-    assert!(wgsl::LENGTHS as usize == state_u32::LENGTHS && wgsl::STATE_U32_FIELDS as usize == state_u32::FIELDS);
-    assert!(wgsl::EPISODE_LIMIT as usize == state_u32::EPISODE_LIMIT && wgsl::HITS as usize == state_u32::HITS);
+    assert!(
+        wgsl::RETURN as usize == state_f32::RETURN
+            && wgsl::TRAVELLED as usize == state_f32::TRAVELLED
+    );
+    assert!(
+        wgsl::RETURNS as usize == state_f32::RETURNS
+            && wgsl::STATE_F32_FIELDS as usize == state_f32::FIELDS
+    );
+    assert!(
+        wgsl::FRAME as usize == state_u32::FRAME
+            && wgsl::EPISODE_STEP as usize == state_u32::EPISODE_STEP
+    );
+    assert!(
+        wgsl::EPISODES as usize == state_u32::EPISODES
+            && wgsl::SUCCESSES as usize == state_u32::SUCCESSES
+    );
+    assert!(
+        wgsl::LENGTHS as usize == state_u32::LENGTHS
+            && wgsl::STATE_U32_FIELDS as usize == state_u32::FIELDS
+    );
+    assert!(
+        wgsl::EPISODE_LIMIT as usize == state_u32::EPISODE_LIMIT
+            && wgsl::HITS as usize == state_u32::HITS
+    );
     assert!(wgsl::HAS_COLLIDED as usize == state_u32::HAS_COLLIDED);
     assert!(wgsl::COLLISIONS as usize == state_u32::COLLISIONS);
     assert!(wgsl::TRUNCATIONS as usize == state_u32::TRUNCATIONS);

@@ -1,10 +1,12 @@
 //! What the policy sees. Shader: `shaders/world/observe.wgsl`.
 
-use super::locomotion_layout::{CELLS, FULL, BASE_OBS_DIM, TARGET_SCALE, MAP_WORDS, MAPS, ROW, state_f32, state_u32};
+use super::locomotion_layout::{
+    BASE_OBS_DIM, CELLS, FULL, MAP_WORDS, MAPS, ROW, TARGET_SCALE, state_f32, state_u32,
+};
 use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
-use crate::motion::features::{POSE_DIM, ROW_STRIDE};
 use crate::motion::character_frame::to_local;
+use crate::motion::features::{POSE_DIM, ROW_STRIDE};
 
 crate::shader_params! {
     pub struct Params for observe {
@@ -36,7 +38,14 @@ pub fn launch(
     gpu.launch(
         &shader::OBSERVE,
         groups,
-        &[features, state_f32, state_u32, termination, maps, observation],
+        &[
+            features,
+            state_f32,
+            state_u32,
+            termination,
+            maps,
+            observation,
+        ],
         params,
     );
 }

@@ -5,8 +5,8 @@ use super::locomotion_layout::{VELOCITY_DIM, boxes, state_f32, state_u32};
 use super::obstacles::{bounce, inside};
 use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
-use crate::motion::features::FRAMES_PER_STEP;
 use crate::motion::character_frame::{to_local, to_world};
+use crate::motion::features::FRAMES_PER_STEP;
 use rayon::prelude::*;
 
 crate::shader_params! {
@@ -36,7 +36,15 @@ pub fn launch(
     gpu.launch(
         &shader::OBSTACLE_COLLISION,
         groups,
-        &[candidates, matched, path, boxes, obstacle_velocity, state_f32, state_u32],
+        &[
+            candidates,
+            matched,
+            path,
+            boxes,
+            obstacle_velocity,
+            state_f32,
+            state_u32,
+        ],
         params,
     );
 }
@@ -67,8 +75,11 @@ pub fn twin(
                 [r(state_f32::X) + moved[0], r(state_f32::Z) + moved[1]]
             });
             let boxes = &boxes[env * boxes::FIELDS * count..][..boxes::FIELDS * count];
-            let obstacle_velocity = &obstacle_velocity[env * VELOCITY_DIM * count..][..VELOCITY_DIM * count];
-            *struck = u32::from((0..count).any(|slot| meets(&points, boxes, obstacle_velocity, slot, params)));
+            let obstacle_velocity =
+                &obstacle_velocity[env * VELOCITY_DIM * count..][..VELOCITY_DIM * count];
+            *struck = u32::from(
+                (0..count).any(|slot| meets(&points, boxes, obstacle_velocity, slot, params)),
+            );
         });
 }
 

@@ -1,6 +1,8 @@
 //! The two obstacle maps of every character (paper, section 4). Shader: `shaders/world/sense.wgsl`.
 
-use super::locomotion_layout::{VELOCITY_DIM, CELL, CELLS, FULL, MAP_WORDS, ROW, boxes, state_f32, state_u32};
+use super::locomotion_layout::{
+    CELL, CELLS, FULL, MAP_WORDS, ROW, VELOCITY_DIM, boxes, state_f32, state_u32,
+};
 use super::obstacles::{bounce, depth};
 use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
@@ -77,11 +79,15 @@ pub fn twin(
         let now = map(&ground, centres);
         let (current, other) = maps.split_at_mut(CELLS * ROW);
         if params.back > 0.0 {
-            let obstacle_velocity = &obstacle_velocity[env * VELOCITY_DIM * count..][..VELOCITY_DIM * count];
-            let before = centres
-                .iter()
-                .zip(obstacle_velocity)
-                .map(|(&place, obstacle_velocity)| bounce(place, -obstacle_velocity, params.back, params.square).0);
+            let obstacle_velocity =
+                &obstacle_velocity[env * VELOCITY_DIM * count..][..VELOCITY_DIM * count];
+            let before =
+                centres
+                    .iter()
+                    .zip(obstacle_velocity)
+                    .map(|(&place, obstacle_velocity)| {
+                        bounce(place, -obstacle_velocity, params.back, params.square).0
+                    });
             other.copy_from_slice(&map(&ground, &before.collect::<Vec<f32>>()));
         } else {
             other.copy_from_slice(if just_reset { &now } else { current });

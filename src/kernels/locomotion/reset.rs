@@ -2,10 +2,10 @@
 
 use super::hits::obstructed;
 use super::locomotion_layout::{boxes, state_f32, state_u32};
-use crate::kernels::termination;
-use crate::kernels::rng::{gaussian, index_below, random4, uniform01};
 use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
+use crate::kernels::rng::{gaussian, index_below, random4, uniform01};
+use crate::kernels::termination;
 
 crate::shader_params! {
     pub struct Params for reset {
@@ -68,12 +68,20 @@ pub fn twin(
         if params.all == 0 && termination[params.offset as usize + env] == termination::RUNNING {
             continue;
         }
-        let draw = |stream| random4(params.seed, params.first + env as u32, params.step_counter, stream);
+        let draw = |stream| {
+            random4(
+                params.seed,
+                params.first + env as u32,
+                params.step_counter,
+                stream,
+            )
+        };
         let [first, early, ..] = draw(START);
         let start = index_below(first, params.candidates);
         state_u32[state_u32::FRAME * envs + env] = candidates[start as usize];
         state_u32[state_u32::EPISODE_STEP * envs + env] = 0;
-        state_u32[state_u32::EPISODE_LIMIT * envs + env] = params.max_steps - index_below(early, params.initial_age_jitter);
+        state_u32[state_u32::EPISODE_LIMIT * envs + env] =
+            params.max_steps - index_below(early, params.initial_age_jitter);
 
         let (east, north) = (gaussian(draw(START + 2)), gaussian(draw(START + 3)));
         let length = (east * east + north * north).sqrt();

@@ -1,10 +1,10 @@
 //! Draws the obstacles of new episodes. Shader: `shaders/world/scatter.wgsl`.
 
 use super::locomotion_layout::{VELOCITY_DIM, boxes};
-use crate::kernels::termination;
-use crate::kernels::rng::{gaussian, random4, uniform01};
 use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
+use crate::kernels::rng::{gaussian, random4, uniform01};
+use crate::kernels::termination;
 
 crate::shader_params! {
     pub struct Params for spawn_obstacles {
@@ -46,11 +46,24 @@ pub fn launch(
     obstacle_velocity: &Buffer<f32>,
     params: &Params,
 ) {
-    let groups = groups(&shader::SPAWN_OBSTACLES, (params.envs * params.count) as usize);
-    gpu.launch(&shader::SPAWN_OBSTACLES, groups, &[termination, boxes, obstacle_velocity], params);
+    let groups = groups(
+        &shader::SPAWN_OBSTACLES,
+        (params.envs * params.count) as usize,
+    );
+    gpu.launch(
+        &shader::SPAWN_OBSTACLES,
+        groups,
+        &[termination, boxes, obstacle_velocity],
+        params,
+    );
 }
 
-pub fn twin(termination: &[u32], boxes: &mut [f32], obstacle_velocity: &mut [f32], params: &Params) {
+pub fn twin(
+    termination: &[u32],
+    boxes: &mut [f32],
+    obstacle_velocity: &mut [f32],
+    params: &Params,
+) {
     let count = params.count as usize;
     for env in 0..params.envs as usize {
         if params.all == 0 && termination[params.offset as usize + env] == termination::RUNNING {
@@ -59,7 +72,12 @@ pub fn twin(termination: &[u32], boxes: &mut [f32], obstacle_velocity: &mut [f32
         for slot in 0..count {
             let draw = |stream| {
                 let stream = BOXES + 32 * slot as u32 + stream;
-                random4(params.seed, params.first + env as u32, params.step_counter, stream)
+                random4(
+                    params.seed,
+                    params.first + env as u32,
+                    params.step_counter,
+                    stream,
+                )
             };
             let size = draw(0);
             let range = params.side_max - params.side_min;

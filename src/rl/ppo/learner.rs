@@ -252,12 +252,7 @@ impl PpoLearner {
         let samples = batch.samples();
         for epoch in 0..self.config.epochs {
             let stream = SHUFFLE + epoch as u32;
-            batch.begin_epoch(permutation(
-                self.seed,
-                self.updates as u32,
-                stream,
-                samples,
-            ));
+            batch.begin_epoch(permutation(self.seed, self.updates as u32, stream, samples));
             self.sums = Array::zeroed(&device, SUMS);
             for start in (0..samples).step_by(self.config.minibatch_size) {
                 let end = samples.min(start + self.config.minibatch_size);

@@ -127,9 +127,11 @@ fn parts_play_what_all_play() {
     let mut batch = EnvBatch::open(&Device::Cpu, envs, None, open).unwrap();
     assert_eq!(batch.parts.len(), 4);
     let mut whole = Rollout::new(&Device::Cpu, envs, steps);
-    let mut parts: Vec<Rollout> = batch.parts.iter().map(|part| {
-        Rollout::new(&Device::Cpu, part.spec().envs, steps)
-    }).collect();
+    let mut parts: Vec<Rollout> = batch
+        .parts
+        .iter()
+        .map(|part| Rollout::new(&Device::Cpu, part.spec().envs, steps))
+        .collect();
     let mut draw = Draw::new(2);
     for _ in 0..steps {
         let actions = actions(&mut draw, envs);
@@ -147,7 +149,10 @@ fn parts_play_what_all_play() {
         let count = part.reward.len() / steps;
         for step in 0..steps {
             let (own, all) = (step * count, step * envs + env);
-            assert_eq!(part.reward.host()[own..][..count], whole.reward.host()[all..][..count]);
+            assert_eq!(
+                part.reward.host()[own..][..count],
+                whole.reward.host()[all..][..count]
+            );
             assert_eq!(
                 part.termination.host()[own..][..count],
                 whole.termination.host()[all..][..count]
@@ -192,7 +197,10 @@ fn a_saved_state_goes_on_as_if_nothing_had_happened() {
         }
         let later = |array: &Array| array.read(&device).unwrap()[steps * envs..].to_vec();
         assert_eq!(later(&rollout.reward), later(&other.reward));
-        assert_eq!(sums(&device, original.as_mut()), sums(&device, restored.as_mut()));
+        assert_eq!(
+            sums(&device, original.as_mut()),
+            sums(&device, restored.as_mut())
+        );
         let error = restored.load(&mut Section::default()).unwrap_err();
         assert!(error.to_string().contains("step_counter"), "{error}");
     }
@@ -250,7 +258,14 @@ fn wild_actions_never_bring_numbers_that_are_none() {
             let seen = rollout.step(batch.as_mut(), &wild);
             assert!(seen.iter().all(|value| value.is_finite()));
         }
-        assert!(rollout.reward.read(&device).unwrap().iter().all(|reward| reward.is_finite()));
+        assert!(
+            rollout
+                .reward
+                .read(&device)
+                .unwrap()
+                .iter()
+                .all(|reward| reward.is_finite())
+        );
         assert!(rollout.terminations().contains(&termination::FAILED));
     }
 }
@@ -272,7 +287,10 @@ fn a_diverged_world_fails_and_begins_anew() {
         let mut rollout = Rollout::new(&device, envs, 2);
         rollout.step(batch.as_mut(), &actions(&mut Draw::new(1), envs));
         let seen = rollout.step(batch.as_mut(), &actions(&mut Draw::new(2), envs));
-        assert!(seen.iter().all(|value| value.is_finite() && value.abs() < 100.0));
+        assert!(
+            seen.iter()
+                .all(|value| value.is_finite() && value.abs() < 100.0)
+        );
         assert_eq!(rollout.terminations()[2], termination::FAILED);
         assert_eq!(rollout.reward.read(&device).unwrap()[2], 0.0);
         assert_eq!(sums(&device, batch.as_mut()).sum("fall"), 1.0);

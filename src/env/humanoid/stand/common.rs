@@ -1,10 +1,10 @@
 //! What environments on both devices need to know: the model, the kernels' parameters.
 
 use super::task::{DT, KEY_BODIES, Stand, spec};
-use crate::env::spec::EnvSpec;
 use crate::env::humanoid::action::action_scale;
 use crate::env::humanoid::batch::{MAX_SPEED, SimulatorBatchConfig};
 use crate::env::humanoid::starts::{START_STATES, start_states};
+use crate::env::spec::EnvSpec;
 use crate::kernels::humanoid::{action_targets, draw_starts, random_pushes, stand_reward};
 use crate::kernels::physics::proprioception;
 use crate::kernels::rng::{index_below, random4};

@@ -1,8 +1,8 @@
 //! The task on all cores: each world plays its step from beginning to end while it is in the cache.
 
 use super::common::Common;
-use crate::env::humanoid::action::rest_action;
 use crate::container::{Section, SectionError};
+use crate::env::humanoid::action::rest_action;
 use crate::env::humanoid::batch::{CpuSimulatorBatch, SimulatedWorld, SimulatorBatch};
 use crate::env::spec::EnvSpec;
 use crate::env::vec_env::{Transition, VecEnv};

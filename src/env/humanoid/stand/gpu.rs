@@ -1,8 +1,8 @@
 //! The task on a GPU: launches only, nothing copied to the host.
 
 use super::common::Common;
-use crate::env::humanoid::action::rest_action;
 use crate::container::{Section, SectionError};
+use crate::env::humanoid::action::rest_action;
 use crate::env::humanoid::batch::GpuSimulatorBatch;
 use crate::env::spec::EnvSpec;
 use crate::env::vec_env::{Transition, VecEnv};
