@@ -102,14 +102,14 @@ impl MotionLibrary {
             shares: Vec::new(),
             notes: Vec::new(),
         };
-        library.qacc_whitened(&weights)
+        library.weighted(&weights)
     }
 
     /// Sets the weights by which motions are drawn.
     ///
     /// # Errors
     /// Weights that are negative, no numbers, all zero, or not one for each motion.
-    pub fn qacc_whitened(mut self, weights: &[f32]) -> Result<MotionLibrary> {
+    pub fn weighted(mut self, weights: &[f32]) -> Result<MotionLibrary> {
         let motions = &self.motions;
         if motions.is_empty() {
             return Err(MotionLibraryError::Empty);

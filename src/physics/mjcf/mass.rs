@@ -55,8 +55,8 @@ impl Mass {
         if mass == 0.0 {
             return Mass::default();
         }
-        let qacc_whitened = parts.iter().map(|part| part.mass * part.com);
-        let com = qacc_whitened.sum::<DVec3>() / mass;
+        let weighted = parts.iter().map(|part| part.mass * part.com);
+        let com = weighted.sum::<DVec3>() / mass;
         let inertia = parts.iter().fold(DMat3::ZERO, |sum, part| {
             sum + part.inertia + part.mass * displaced(part.com - com)
         });

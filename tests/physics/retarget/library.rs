@@ -44,13 +44,13 @@ fn load<P: AsRef<Path>>(
 fn motions_are_drawn_by_weight_and_times_evenly() {
     const DRAWS: u32 = 200_000;
     let (_, library) = library();
-    let qacc_whitened = library
+    let weighted = library
         .clone()
-        .qacc_whitened(&[0.0, 1.0, 3.0])
+        .weighted(&[0.0, 1.0, 3.0])
         .expect("weights");
     for (library, shares) in [
         (&library, [4.0 / 7.0, 2.0 / 7.0, 1.0 / 7.0]),
-        (&qacc_whitened, [0.0, 0.25, 0.75]),
+        (&weighted, [0.0, 0.25, 0.75]),
     ] {
         let mut counts = [0u32; 3];
         let mut moments = [[0.0f64; 2]; 3];
@@ -191,7 +191,7 @@ fn what_makes_no_library_is_said() {
         &[1.0, f32::NAN, 1.0],
         &[f32::MAX; 3],
     ] {
-        let error = library.clone().qacc_whitened(weights).expect_err("refused");
+        let error = library.clone().weighted(weights).expect_err("refused");
         let named = matches!(
             error,
             MotionLibraryError::Weights { .. } | MotionLibraryError::Weight { .. }
