@@ -66,6 +66,9 @@
 //! is motion matching and physics on the CPU, without burn, wgpu or a command line. `train,cli` trains on
 //! the CPU. No real GPU has been measured yet: the shaders are tested on Mesa's lavapipe.
 
+#![warn(missing_docs)]
+#![allow(rustdoc::private_intra_doc_links)]
+
 #[cfg(all(feature = "report", feature = "train"))]
 pub mod bench;
 pub mod container;

@@ -11,7 +11,7 @@ mod matmul;
 mod microkernel;
 mod tanh;
 
-use super::engine::{EngineSize, Rows, Samples};
+use super::extent::{EngineSize, Rows, Samples};
 use super::network::{LayerParams, Network};
 use super::objective::{HostBatch, Objective};
 use crate::gpu::Array;

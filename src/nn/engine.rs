@@ -3,13 +3,13 @@
 use super::cpu::CpuEngine;
 #[cfg(feature = "gpu")]
 use super::gpu::{fused::Fused, layerwise::Layerwise};
+use super::extent::{EngineSize, Rows, Samples};
 use super::network::Network;
 use super::objective::Objective;
 #[cfg(feature = "gpu")]
 use crate::gpu::Gpu;
 use crate::gpu::{Array, Device};
 use anyhow::Result;
-use std::ops::Range;
 
 /// One or more networks over the same observations, whose parameters are one flat vector.
 ///
@@ -27,15 +27,6 @@ enum Backend {
     Fused(Box<Fused>),
     #[cfg(feature = "gpu")]
     Layerwise(Layerwise),
-}
-
-/// Which of the samples make up a minibatch.
-#[derive(Clone, Debug)]
-pub enum Rows<'a> {
-    /// Those of a range.
-    Range(Range<usize>),
-    /// Those of a list; on the CPU only.
-    Indices(&'a [u32]),
 }
 
 impl Engine {
@@ -151,34 +142,5 @@ impl Engine {
                 engine.gradient(parameters, in_order(rows), objective, gradient, sums);
             }
         }
-    }
-}
-
-/// Samples `[..][width]` that begin with observations: `count` of them from `first` on.
-#[derive(Clone, Copy)]
-pub(super) struct Samples<'a> {
-    pub values: &'a Array,
-    pub width: usize,
-    pub first: usize,
-    pub count: usize,
-}
-
-/// What [`Engine::new`] is told of what there is to evaluate and to learn.
-#[derive(Clone, Copy, Debug)]
-pub struct EngineSize {
-    /// Length of the flat vector.
-    pub parameters: usize,
-    /// Numbers that the objective adds up.
-    pub extras: usize,
-    /// The most rows evaluated at once.
-    pub max_rows: usize,
-    /// The most rows learned from at once.
-    pub minibatch: usize,
-}
-
-impl EngineSize {
-    /// Parameters behind those of the networks.
-    pub(super) fn others(&self, networks: &[Network]) -> usize {
-        self.parameters - networks.last().map_or(0, |last| last.span().end)
     }
 }

@@ -9,6 +9,7 @@ pub mod actor_critic;
 pub mod adam;
 pub mod cpu;
 pub mod engine;
+pub mod extent;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod layer;
@@ -20,7 +21,8 @@ pub mod running_mean_std;
 
 pub use actor_critic::ActorCritic;
 pub use adam::Adam;
-pub use engine::{Engine, Rows};
+pub use engine::Engine;
+pub use extent::{EngineSize, Rows};
 pub use network::{Network, NetworkConfig, NetworkError};
 pub use objective::Objective;
 pub use policy::Policy;

@@ -1,11 +1,11 @@
 //! Narrow dense networks by custom WGSL kernels: one launch for all layers of all networks, and a gradient
 //! in four and the objective's.
 
-use super::dims;
+use super::dims::dims;
 use crate::gpu::{Array, Buffer, Device, Gpu};
 use crate::kernels::learn::network::{BatchLayout, IDENTITY, MAX_ROWS, RELU, TANH};
 use crate::kernels::learn::{backward, forward, gradient, reduce_grads};
-use crate::nn::engine::{EngineSize, Samples};
+use crate::nn::extent::{EngineSize, Samples};
 use crate::nn::layer::Activation;
 use crate::nn::network::{LayerParams, Network};
 use crate::nn::objective::{GpuBatch, Objective};

@@ -1,11 +1,11 @@
 //! Networks of any layers, one after another in burn's tensors: products of matrices and convolutions, whose
 //! gradients are taken by hand.
 
-use super::dims;
+use super::dims::dims;
 use super::tensors::{column_sums, write};
 use crate::gpu::tensor::{from_buffer, to_buffer};
 use crate::gpu::{Array, Buffer, Device, Gpu};
-use crate::nn::engine::{EngineSize, Samples};
+use crate::nn::extent::{EngineSize, Samples};
 use crate::nn::layer::{Activation, Layer};
 use crate::nn::network::{LayerParams, Network};
 use crate::nn::objective::{GpuBatch, Objective};
