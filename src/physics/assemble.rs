@@ -10,6 +10,7 @@ use std::ops::Range;
 pub struct Part<'a> {
     /// Prefix of the names of its bodies, joints and geoms.
     pub prefix: &'a str,
+    /// Model whose bodies, joints and geoms the part adds.
     pub model: &'a Model,
     /// Position of its origin in the world, m.
     pub position: Vec3,

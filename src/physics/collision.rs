@@ -14,10 +14,15 @@ pub use contact_point::{ContactManifold, ContactPoint, MAX_POINTS, WorldGeom};
 /// length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PairKind {
+    /// A plane and a capsule or sphere.
     PlaneCapsule,
+    /// A plane and a box.
     PlaneBox,
+    /// Two capsules or spheres.
     CapsuleCapsule,
+    /// A capsule or sphere and a box.
     CapsuleBox,
+    /// Two boxes.
     BoxBox,
 }
 
@@ -56,6 +61,7 @@ pub fn collide(first: &WorldGeom, second: &WorldGeom, out: &mut ContactManifold)
 /// The contacts of a world.
 #[derive(Clone, Debug, Default)]
 pub struct DetectedContacts {
+    /// Contact points in the order of the model's pairs, at most `max_contacts` of them.
     pub points: Vec<ContactPoint>,
     /// Ids of the points: the pair times [`MAX_POINTS`] plus the number in the pair, the same from step
     /// to step.

@@ -23,7 +23,9 @@ pub type Lane = [f32; 8];
 /// zeros.
 #[derive(Clone, Debug, Default)]
 pub struct ConstraintRows {
+    /// Lanes of a row: degrees of freedom divided by 8, rounded up.
     pub stride: usize,
+    /// Number of rows (MuJoCo's `nefc`).
     pub len: usize,
     /// How degrees of freedom move the constrained distance, J; whitened once all are there, which is also
     /// how a unit force along the row accelerates them.
@@ -33,18 +35,22 @@ pub struct ConstraintRows {
 /// A joint at the end of its range: one row.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LimitConstraint {
+    /// Index of the joint in [`Model::joints`].
     pub joint: usize,
+    /// Index of its row in [`ConstraintRows`].
     pub row: usize,
     /// Acceleration that it demands.
     pub target: f32,
     /// Regularisation R, added to the row's own response.
     pub regularization: f32,
+    /// Torque back into the range, Nm, never negative; before the solver runs, that of the last step.
     pub force: f32,
 }
 
 /// A point of contact: a row for the normal, and one for each tangent.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactConstraint {
+    /// Index of the normal's row in [`ConstraintRows`]; the rows of the two tangents follow it.
     pub row: usize,
     /// 0 if it slides freely.
     pub friction: f32,
@@ -86,6 +92,7 @@ impl ConstraintRows {
         }
     }
 
+    /// Removes all rows and keeps their memory.
     pub fn clear(&mut self) {
         self.len = 0;
         self.values.clear();
@@ -98,10 +105,12 @@ impl ConstraintRows {
         self.len - 1
     }
 
+    /// Entries of a row, `[8 * stride]`, one for each degree of freedom and zeros behind them.
     pub fn row(&self, row: usize) -> &[f32] {
         self.values[row * self.stride..][..self.stride].as_flattened()
     }
 
+    /// Mutable entries of a row, laid out as in [`row`](Self::row).
     pub fn row_mut(&mut self, row: usize) -> &mut [f32] {
         self.values[row * self.stride..][..self.stride].as_flattened_mut()
     }

@@ -9,7 +9,9 @@ use glam::{Quat, Vec3};
 /// A drive's force, Nm, and its armature, kg m^2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effort {
+    /// Torque at zero acceleration, Nm: kp (target - q - dt v) - kd v, or the limit once that is passed.
     pub force: f32,
+    /// Inertia that makes the drive implicit, kg m^2: dt kd + dt^2 kp; zero at the limit.
     pub armature: f32,
 }
 

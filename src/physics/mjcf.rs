@@ -31,8 +31,14 @@ use std::io::Read;
 use std::path::Path;
 use worldbody::WorldBuilder;
 
+/// Size of the largest file that is read, bytes: 1 MiB.
 pub const MAX_BYTES: u64 = 1 << 20;
 
+/// Reads a model from an MJCF file.
+///
+/// # Errors
+/// A file that cannot be read, is larger than [`MAX_BYTES`] or is not UTF-8; text that is no valid XML;
+/// elements, attributes and values that are wrong or not supported, with the line they are on.
 pub fn read(path: &Path) -> Result<Model> {
     let failed = |error| MjcfError::Read {
         path: path.to_path_buf(),

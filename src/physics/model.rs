@@ -13,12 +13,15 @@ use std::ops::Range;
 /// A compiled model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
+    /// Name in the file, empty if it has none; of several models in one world, theirs joined by ` + `.
     pub name: String,
     /// Parents before their children.
     pub bodies: Vec<Body>,
     /// Joints in the order of their bodies; a body may have several hinges, the first nearest its parent.
     pub joints: Vec<Joint>,
+    /// Degrees of freedom in the order of their joints, `[nv]`.
     pub dofs: Vec<Dof>,
+    /// Shapes that may touch something, on bodies or standing still (MuJoCo's `geom`).
     pub geoms: Vec<Geom>,
     /// One tree for each body without a parent.
     pub trees: Vec<KinematicTree>,
@@ -28,20 +31,28 @@ pub struct Model {
     pub qpos0: Vec<f32>,
 }
 
+/// A rigid body that can move. Bodies fixed to the world are left out, but for their geoms.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Body {
+    /// Name in the file, empty if it has none.
     pub name: String,
+    /// Index of the parent, none for the root of a tree (MuJoCo's `body_parentid`).
     pub parent: Option<usize>,
     /// In the parent's frame, all joints at zero.
     pub position: Vec3,
+    /// Rotation in the parent's frame or, of a root, the world's, all joints at zero (MuJoCo's `body_quat`).
     pub rotation: Quat,
+    /// Mass without that of its children, kg (MuJoCo's `body_mass`).
     pub mass: f32,
     /// Centre of mass.
     pub com: Vec3,
     /// About the centre of mass, along the body's axes, kg m^2.
     pub inertia: Mat3,
+    /// Indices of its joints in [`Model::joints`], empty if it is welded to its parent.
     pub joints: Range<usize>,
+    /// Indices of its own degrees of freedom in [`Model::dofs`].
     pub dofs: Range<usize>,
+    /// Index of its tree in [`Model::trees`] (MuJoCo's `body_treeid`).
     pub tree: usize,
     /// Last of its own degrees of freedom or, if it is welded, of the nearest ancestor's that has some.
     pub last_dof: Option<usize>,
@@ -53,8 +64,11 @@ pub struct Body {
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
+    /// Any translation and rotation: six degrees of freedom, of a root alone (MuJoCo's `mjJNT_FREE`).
     Free,
+    /// Any rotation about the anchor: three degrees of freedom (MuJoCo's `mjJNT_BALL`).
     Ball,
+    /// Rotation about one axis through the anchor (MuJoCo's `mjJNT_HINGE`).
     Hinge,
 }
 
@@ -81,8 +95,11 @@ impl JointKind {
 /// A joint between a body and its parent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
+    /// Name in the file, empty if it has none.
     pub name: String,
+    /// Which way it moves (MuJoCo's `jnt_type`).
     pub kind: JointKind,
+    /// Index of the body that it moves (MuJoCo's `jnt_bodyid`).
     pub body: usize,
     /// Anchor in the body's frame, m.
     pub position: Vec3,
@@ -101,7 +118,9 @@ pub struct Joint {
 /// A degree of freedom.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dof {
+    /// Index of its joint (MuJoCo's `dof_jntid`).
     pub joint: usize,
+    /// Index of the body that it moves (MuJoCo's `dof_bodyid`).
     pub body: usize,
     /// The next one towards the root.
     pub parent: Option<usize>,
@@ -111,6 +130,7 @@ pub struct Dof {
     pub row: usize,
     /// Inertia added to its own, kg m^2 (kg for translations).
     pub armature: f32,
+    /// Its actuator, none if it is passive.
     pub drive: Option<Drive>,
     /// Inverse inertia that a force at it meets at the start (MuJoCo's `dof_invweight0`).
     pub invweight0: f32,
@@ -150,16 +170,21 @@ impl Default for SolverParams {
 pub enum GeomShape {
     /// The half space below z = 0 of its frame.
     Plane,
+    /// A ball around the origin of its frame.
     Sphere {
+        /// Radius, m.
         radius: f32,
     },
     /// A capsule along z; `half` is half the distance of the two centres.
     Capsule {
+        /// Radius of the ends and of the cylinder between them, m.
         radius: f32,
+        /// Half the length of the cylinder without the ends, m.
         half: f32,
     },
     /// `half` are half the lengths of its edges.
     Box {
+        /// Half lengths along x, y and z of its frame, m.
         half: Vec3,
     },
 }
@@ -167,9 +192,11 @@ pub enum GeomShape {
 /// A shape on a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geom {
+    /// Name in the file, empty if it has none.
     pub name: String,
     /// The body it moves with; none if it stands still.
     pub body: Option<usize>,
+    /// Shape and sizes in its own frame (MuJoCo's `geom_type`, `geom_size`).
     pub shape: GeomShape,
     /// Position in the body's frame, m.
     pub position: Vec3,
@@ -186,7 +213,9 @@ pub struct Geom {
 /// A body without a parent and all that hangs on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KinematicTree {
+    /// Indices in [`Model::bodies`], the root first.
     pub bodies: Range<usize>,
+    /// Indices in [`Model::dofs`].
     pub dofs: Range<usize>,
 }
 

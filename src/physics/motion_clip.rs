@@ -4,11 +4,14 @@ use super::drive::rotation_vector;
 use super::kinematics::{quaternion, store};
 use super::model::{JointKind, Model};
 
+/// A motion of one model, at a fixed rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionClip {
+    /// Name of the clip that it was made from.
     pub name: String,
     /// Frames a second.
     pub rate: f32,
+    /// Number of frames, 1 / `rate` seconds apart.
     pub frames: usize,
     /// `[frame][positions]`
     pub q: Vec<f32>,

@@ -11,36 +11,59 @@ use rayon::prelude::*;
 use std::path::Path;
 use std::sync::Arc;
 
+/// A result of making a library of motions.
 pub type Result<T> = std::result::Result<T, MotionLibraryError>;
 
 /// Why there is no library.
 #[derive(Debug, thiserror::Error)]
 pub enum MotionLibraryError {
+    /// No motions.
     #[error(
         "a library needs motions, and none was given: name BVH files or folders that hold some"
     )]
     Empty,
+    /// Files that cannot be imported.
     #[error(transparent)]
     Motion(#[from] motion::MotionError),
+    /// A clip that cannot be put into the model's body.
     #[error("the clip '{clip}' cannot be put into the body: {error}")]
     Retarget {
+        /// Name of the clip.
         clip: String,
+        /// What the clip, its skeleton or the model lacks.
         error: retarget::RetargetError,
     },
+    /// A motion whose frames do not have as many positions as the model.
     #[error("'{motion}' does not fit the model '{model}': it was made for another")]
-    Model { motion: String, model: String },
+    Model {
+        /// Name of the motion.
+        motion: String,
+        /// Name of the library's model.
+        model: String,
+    },
+    /// More or fewer weights than motions.
     #[error("{weights} weights were given for {motions} motions; give one for each")]
-    Weights { weights: usize, motions: usize },
+    Weights {
+        /// Number of weights given.
+        weights: usize,
+        /// Number of motions in the library.
+        motions: usize,
+    },
+    /// A negative weight, or weights whose sum is not positive and finite.
     #[error(
         "the weight of '{motion}' is {weight}, that of all motions {total}: give weights of zero or more, not all zero"
     )]
     Weight {
+        /// Name of the first motion with a negative weight or, where the sum is wrong, of the very first.
         motion: String,
+        /// Weight of that motion.
         weight: f32,
+        /// Sum of all weights.
         total: f32,
     },
 }
 
+/// Motions of one model, each as likely to be drawn as its share of all weights.
 #[derive(Clone, Debug)]
 pub struct MotionLibrary {
     model: Arc<Model>,
@@ -138,6 +161,7 @@ impl MotionLibrary {
         Ok(self)
     }
 
+    /// The motions, in the order of the indices that [`sample`](Self::sample) draws.
     pub fn motions(&self) -> &[MotionClip] {
         &self.motions
     }

@@ -8,6 +8,7 @@ use std::ops::Mul;
 pub struct Pose {
     /// m
     pub position: Vec3,
+    /// Rotation from this frame to the outer one, a unit quaternion.
     pub rotation: Quat,
 }
 

@@ -98,7 +98,9 @@ impl SimulatorState {
 /// A world's workspace: everything a step computes on the way, for whoever wants to see it.
 #[derive(Clone, Debug)]
 pub struct Simulator {
+    /// Model of the worlds, which are all alike.
     pub model: Arc<Model>,
+    /// Time step, solver iterations and room for contacts.
     pub options: SolverOptions,
     columns: Vec<usize>,
     /// Poses of the bodies in the world, `[bodies]`.
@@ -120,9 +122,13 @@ pub struct Simulator {
     pub qacc_smooth: Vec<f32>,
     /// The same, whitened by the factor of the mass matrix: L qacc.
     pub qacc_whitened: Vec<f32>,
+    /// Contacts that the last step, or [`forward`](Self::forward), detected.
     pub contacts: DetectedContacts,
+    /// Constraint rows: one for each limit, then three for each contact.
     pub rows: ConstraintRows,
+    /// Joints past their limits, with the forces found.
     pub limit_constraints: Vec<LimitConstraint>,
+    /// Contacts as constraints, in the order of `contacts.points`, with the forces found.
     pub contact_constraints: Vec<ContactConstraint>,
     block: Vec<[f32; LANES]>,
     blocks: Vec<ResponseBlock>,

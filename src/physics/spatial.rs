@@ -7,11 +7,14 @@ use std::ops::{Add, AddAssign, Mul};
 /// A motion (angular, linear at the origin) or a force (torque about the origin, force).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spatial {
+    /// Angular velocity, rad/s, or torque about the origin, Nm.
     pub angular: Vec3,
+    /// Velocity at the origin, m/s, or force, N.
     pub linear: Vec3,
 }
 
 impl Spatial {
+    /// No motion, or no force.
     pub const ZERO: Spatial = Spatial {
         angular: Vec3::ZERO,
         linear: Vec3::ZERO,
@@ -80,6 +83,7 @@ impl Mul<f32> for Spatial {
 /// Inertia of a rigid body, or of several that move as one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inertia {
+    /// Total mass, kg.
     pub mass: f32,
     /// Mass times centre of mass from the origin, kg m.
     pub moment: Vec3,

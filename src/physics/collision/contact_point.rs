@@ -18,6 +18,9 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
+    /// A point at `position`, in the world's frame, with the tangent of MuJoCo's `mju_makeFrame`: the part
+    /// across the unit `normal` of the world's y axis or, where the normal is within 60 degrees of y, of z.
+    /// `distance` is in m, negative where the shapes overlap.
     pub fn new(position: Vec3, normal: Vec3, distance: f32) -> ContactPoint {
         let tangent = match normal.y.abs() < 0.5 {
             true => across(normal, Vec3::Y),
@@ -83,8 +86,11 @@ impl ContactManifold {
 /// A geom in the world.
 #[derive(Clone, Copy, Debug)]
 pub struct WorldGeom {
+    /// Shape and sizes in the geom's own frame.
     pub shape: GeomShape,
+    /// Origin of the geom's frame in the world, m (MuJoCo's `geom_xpos`).
     pub position: Vec3,
+    /// Rotation from the geom's frame to the world's (MuJoCo's `geom_xmat`).
     pub rotation: Mat3,
 }
 
@@ -114,6 +120,7 @@ pub struct Cuboid {
 }
 
 impl WorldGeom {
+    /// Places a geom in the world; `poses`, `[bodies]`, are those of the bodies.
     pub fn new(geom: &Geom, poses: &[Pose]) -> WorldGeom {
         let pose = geom.pose(poses);
         WorldGeom {
@@ -123,6 +130,10 @@ impl WorldGeom {
         }
     }
 
+    /// The geom as a capsule along its own z axis, a sphere as one of zero length.
+    ///
+    /// # Panics
+    /// If the geom is a plane or a box.
     pub fn capsule(&self) -> Capsule {
         let (radius, half) = match self.shape {
             GeomShape::Sphere { radius } => (radius, 0.0),
@@ -137,6 +148,7 @@ impl WorldGeom {
         }
     }
 
+    /// The geom as a box; `half` are half the lengths of its edges, m.
     pub fn cuboid(&self, half: Vec3) -> Cuboid {
         Cuboid {
             centre: self.position,
