@@ -22,7 +22,7 @@ pub struct Engine {
 }
 
 enum Backend {
-    Cpu(CpuEngine),
+    Cpu(Box<CpuEngine>),
     #[cfg(feature = "gpu")]
     Fused(Box<Fused>),
     #[cfg(feature = "gpu")]
@@ -52,7 +52,7 @@ impl Engine {
         };
         let observation = networks[0].observation().dim();
         let backend = match device {
-            Device::Cpu => Backend::Cpu(CpuEngine::new(networks, size)),
+            Device::Cpu => Backend::Cpu(Box::new(CpuEngine::new(networks, size))),
             #[cfg(feature = "gpu")]
             Device::Gpu(gpu) => match Fused::new(gpu, &networks, size) {
                 Some(fused) => Backend::Fused(Box::new(fused)),

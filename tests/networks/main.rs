@@ -8,10 +8,9 @@ mod running;
 
 use footwork::gpu::{Array, Choice, Device};
 use footwork::kernels::rng::{gaussian, random4};
-use footwork::nn::engine::EngineSize;
 use footwork::nn::layer::{Activation, Convolution};
 use footwork::nn::observation::ObservationSpec;
-use footwork::nn::{ActorCritic, Adam, Engine, NetworkConfig, Policy, Rows};
+use footwork::nn::{ActorCritic, Adam, Engine, EngineSize, NetworkConfig, Policy, Rows};
 use footwork::rl::ppo::loss::{LossCoefficients, PpoLoss, SUMS};
 
 const ACTION: usize = 5;

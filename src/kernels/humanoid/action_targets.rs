@@ -40,6 +40,7 @@ pub fn twin(action: &[f32], scale: &[f32], targets: &mut [f32], params: &Params)
 }
 
 /// Targets `[driven]` of an environment's action `[driven]`, rad. Actions beyond one count as one.
+#[expect(clippy::manual_clamp, reason = "NaN becomes a number here")]
 pub fn set_targets(action: &[f32], scale: &[f32], targets: &mut [f32]) {
     let (offset, scale) = scale.split_at(targets.len());
     for (drive, target) in targets.iter_mut().enumerate() {

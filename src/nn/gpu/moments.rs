@@ -43,5 +43,5 @@ fn halves(gpu: &Gpu, moments: &Array) -> [Tensor<2>; 2] {
 
 fn rows_of(gpu: &Gpu, values: &Array, at: usize, rows: usize, dim: usize) -> Tensor<2> {
     let all: Tensor<1> = from_buffer(gpu, values.buffer(), [values.len()]);
-    all.slice([at..at + rows * dim]).reshape([rows, dim])
+    all.narrow(0, at, rows * dim).reshape([rows, dim])
 }

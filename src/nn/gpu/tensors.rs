@@ -28,6 +28,7 @@ pub fn column_sums(values: Tensor<2>) -> Tensor<1> {
 
 /// Writes a tensor's values into an array from the index `at` on. In place where nobody else holds the
 /// array's memory.
+#[expect(clippy::single_range_in_vec_init, reason = "a range of one dimension")]
 pub fn write<const D: usize>(gpu: &Gpu, values: Tensor<D>, out: &mut Array, at: usize) {
     let buffer = std::mem::replace(out, Array::Host(Vec::new()));
     let tensor: Tensor<1> = from_buffer(gpu, buffer.buffer(), [buffer.len()]);

@@ -98,10 +98,11 @@ impl PpoLearner {
     fn collect(&mut self, envs: &mut EnvBatch, log_std: &Array) -> Result<[f64; 2]> {
         let begin = Instant::now();
         if self.rollouts.is_empty() {
-            let new = |part: &Box<dyn VecEnv>| {
-                Rollout::new(&self.device, part.spec(), self.config.rollout_length)
-            };
-            self.rollouts = envs.parts.iter().map(new).collect();
+            let (device, steps) = (&self.device, self.config.rollout_length);
+            let specs = envs.parts.iter().map(|part| *part.spec());
+            self.rollouts = specs
+                .map(|spec| Rollout::new(device, &spec, steps))
+                .collect();
         }
         let mut rollouts = std::mem::take(&mut self.rollouts);
         let firsts: Vec<usize> = rollouts

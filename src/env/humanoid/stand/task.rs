@@ -54,12 +54,12 @@ impl Default for Stand {
             alive_reward: 0.3,
             upright_reward: 0.5,
             stillness_reward: 0.2,
-            min_push: 5.0,
-            max_push: 15.0,
-            start_joint_angle: 0.15,
-            start_tilt: 0.1,
-            start_root_speed: 0.2,
-            start_joint_speed: 0.5,
+            min_push: 2.0,
+            max_push: 6.0,
+            start_joint_angle: 0.1,
+            start_tilt: 0.05,
+            start_root_speed: 0.1,
+            start_joint_speed: 0.2,
         }
     }
 }
