@@ -19,6 +19,7 @@ const PARTS: usize = 4;
 
 /// All environments of a training.
 pub struct EnvBatch {
+    /// Parts that together are the batch, in the order of their environments.
     pub parts: Vec<Box<dyn VecEnv>>,
     /// How the difficulty rises, if it does.
     pub curriculum: Option<Curriculum>,

@@ -12,6 +12,7 @@ pub enum LiveView {
     Cpu(States),
 }
 
+/// State of a batch in the buffers that its kernels work on.
 pub struct Buffers {
     /// `[state_f32::FIELDS][envs]`, see [`crate::kernels::locomotion::locomotion_layout`].
     pub state_f32: Shared,
@@ -28,8 +29,11 @@ pub struct States(pub Vec<Arc<Mutex<State>>>);
 /// The same of one part.
 #[derive(Clone, Debug, Default)]
 pub struct State {
+    /// `[state_f32::FIELDS][envs]`
     pub state_f32: Vec<f32>,
+    /// `[state_u32::FIELDS][envs]`
     pub state_u32: Vec<u32>,
+    /// `[envs][boxes::FIELDS][count]`; empty without obstacles.
     pub boxes: Vec<f32>,
 }
 

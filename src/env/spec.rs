@@ -11,6 +11,7 @@ pub struct EnvSpec {
     pub envs: usize,
     /// Agents of an environment: two fighters of one world are two rows.
     pub agents: usize,
+    /// Form of an agent's observation.
     pub observation: ObservationSpec,
     /// Numbers of an action.
     pub action: usize,

@@ -22,6 +22,7 @@ pub struct Transition<'a> {
 /// Environments that are stepped together, with same-step reset (Gymnasium's `SAME_STEP`): a step that
 /// ends an episode begins the next one, and the next observation is of that.
 pub trait VecEnv: Send {
+    /// The dimensions of the batch.
     fn spec(&self) -> &EnvSpec;
 
     /// An action that keeps an agent as it is, `[action]`: what a policy begins near. Empty: all zero.

@@ -25,26 +25,50 @@ pub struct NetworkConfig {
 /// A network that cannot be.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NetworkError {
+    /// More layers of a kind than are possible.
     #[error("{key} has {layers} layers; at most {MAX_DEPTH} are possible")]
-    TooDeep { key: &'static str, layers: usize },
+    TooDeep {
+        /// Key of [`NetworkConfig`] that lists them.
+        key: &'static str,
+        /// Layers listed there.
+        layers: usize,
+    },
+    /// A dense layer of no width, or wider than is possible.
     #[error("{key} has a layer of width {width}; possible are 1 to {MAX_WIDTH}")]
-    Width { key: &'static str, width: usize },
+    Width {
+        /// Key of [`NetworkConfig`] that lists the layer.
+        key: &'static str,
+        /// Width of the layer.
+        width: usize,
+    },
+    /// A convolution with a number out of its range.
     #[error("convolutions has a {what} of {value}; possible are 1 to {most}")]
     Convolution {
+        /// Which number, in words: of filters, a filter's size, or the stride.
         what: &'static str,
+        /// The number as configured.
         value: usize,
+        /// Largest value possible.
         most: usize,
     },
+    /// A filter larger than the maps it would go over.
     #[error(
         "convolutions has a filter of {size} x {size} cells over an input of {height} x {width}: each convolution makes the maps smaller"
     )]
     FilterTooLarge {
+        /// Height and width of the filter, cells.
         size: usize,
+        /// Height of the convolution's input, cells.
         height: usize,
+        /// Width of the convolution's input, cells.
         width: usize,
     },
+    /// Layers for maps, where observations have none.
     #[error("{key} needs maps, and this task's observation has none: leave it empty")]
-    NoGrid { key: &'static str },
+    NoGrid {
+        /// Key of [`NetworkConfig`] that lists the layers.
+        key: &'static str,
+    },
 }
 
 /// The most layers of a kind.
@@ -131,6 +155,7 @@ fn depth(key: &'static str, layers: usize) -> Result<(), NetworkError> {
 /// A layer, and where its weights `[patch][filters]`, then its biases `[filters]`, lie in the flat vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerParams {
+    /// Shape of the layer.
     pub layer: Layer,
     start: usize,
 }

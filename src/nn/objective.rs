@@ -37,6 +37,7 @@ pub struct GpuBatch<'a> {
     pub width: usize,
     /// Samples from `first` on.
     pub first: usize,
+    /// Samples of the minibatch.
     pub rows: usize,
     /// The flat vector.
     pub parameters: &'a Buffer<f32>,

@@ -20,9 +20,11 @@ pub struct Iteration {
     pub losses: Vec<(&'static str, f64)>,
     /// Sums over the episodes that ended in it.
     pub stats: Stats,
-    /// Seconds spent in the networks while acting, in the environments, and learning.
+    /// Seconds spent in the networks while acting.
     pub policy_s: f64,
+    /// Seconds spent in the environments.
     pub env_s: f64,
+    /// Seconds spent learning.
     pub learn_s: f64,
 }
 

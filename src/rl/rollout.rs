@@ -6,6 +6,7 @@ use anyhow::Result;
 
 /// One rollout of a part of the environments, time-major: rows of step 0 first.
 pub struct Rollout {
+    /// Dimensions of the part's environments.
     pub spec: EnvSpec,
     /// Steps of every environment.
     pub steps: usize,

@@ -49,34 +49,57 @@ pub struct Checkpoint {
 /// Why a checkpoint is of no use.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckpointError {
+    /// A file that cannot be read or written, is damaged, or is no checkpoint of this format.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// A file of a format that this version no longer reads.
     #[error(
         "{path} was written by footwork 0.1 from before checkpoints had sections (format {format}). This is footwork {VERSION}, which does not read it: use the one that wrote it, or train anew"
     )]
-    Older { path: PathBuf, format: u32 },
+    Older {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Version of its format.
+        format: u32,
+    },
+    /// A policy trained on other data.
     #[error(
         "{path} was trained with other data (fingerprint {found:08x}, this has {wanted:08x}): bring back what the run was started with or name it with --data, or start another run"
     )]
     Data {
+        /// The checkpoint.
         path: PathBuf,
+        /// Fingerprint of the data it was trained on.
         found: u32,
+        /// Fingerprint of the data at hand.
         wanted: u32,
     },
+    /// A configuration that has changed since the run was started.
     #[error(
         "`{key}` in the run's config.toml is not what the run was started with: put it back, or start another run"
     )]
-    Changed { key: String },
+    Changed {
+        /// First key that differs, like `ppo.gamma`.
+        key: String,
+    },
+    /// A checkpoint of another task.
     #[error("{path} is of the task `{found}`, not of `{wanted}`")]
     Task {
+        /// The checkpoint.
         path: PathBuf,
+        /// Name of its task.
         found: String,
+        /// Name of the task at hand.
         wanted: String,
     },
+    /// A checkpoint of environments with other dimensions.
     #[error("{path} is of environments with {found}, not with {wanted}: start another run")]
     Spec {
+        /// The checkpoint.
         path: PathBuf,
+        /// Its numbers of observations and actions, in words.
         found: String,
+        /// Those of the environments at hand, in words.
         wanted: String,
     },
 }

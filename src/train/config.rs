@@ -80,37 +80,72 @@ pub struct TaskConfig {
 /// Why a configuration is of no use. All of these are mistakes of usage.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
+    /// A file that cannot be read.
     #[error("cannot read {path}: {error}")]
     Read {
+        /// The file.
         path: PathBuf,
+        /// Why it cannot be read.
         error: std::io::Error,
     },
+    /// A file that is not TOML, or with a mistake in no line of it in particular.
     #[error("{path}: {message}")]
-    Toml { path: PathBuf, message: String },
+    Toml {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// An unknown key in a file, or one that takes other values.
     #[error("{path}, line {line}: {problem}")]
     Key {
+        /// The file.
         path: PathBuf,
+        /// Line of the key, from 1.
         line: usize,
+        /// What is wrong with the key or its value.
         problem: String,
     },
+    /// A key that cannot be changed so on the command line.
     #[error("--set {key}: {problem}")]
-    Set { key: String, problem: String },
+    Set {
+        /// The key with its tables, like `ppo.gamma`.
+        key: String,
+        /// What is wrong with the key or its value.
+        problem: String,
+    },
+    /// A value that cannot work.
     #[error("{key} is {value}: {why}")]
     Value {
+        /// The key with its tables, like `ppo.gamma`.
         key: &'static str,
+        /// The value as text.
         value: String,
+        /// Why it cannot work.
         why: String,
     },
+    /// A mistake in a task's own choices.
     #[error("[task]: {0}")]
     Settings(String),
+    /// A network that cannot be, or not for the task's observations.
     #[error("ppo.network.{0}")]
     Network(#[from] NetworkError),
+    /// A name that no task has.
     #[error("there is no task `{name}`{hint}")]
-    Task { name: String, hint: String },
+    Task {
+        /// The name.
+        name: String,
+        /// Suggestion of the nearest name, to follow on the message.
+        hint: String,
+    },
+    /// A run's configuration of a form that this version no longer reads.
     #[error(
         "{path} names no task in its table [task]: it was written by footwork 0.1 from before runs were divided into tables. This is footwork {VERSION}, which does not read it: use the one that wrote it, or train anew"
     )]
-    Older { path: PathBuf },
+    Older {
+        /// The file.
+        path: PathBuf,
+    },
 }
 
 impl Config {

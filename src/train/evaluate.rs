@@ -35,8 +35,9 @@ pub struct LocomotionReport {
     /// Fraction of episodes that stayed within 1.5 m of the target for over 5 s on end without reaching
     /// it.
     pub loiter: f64,
-    /// Over the successful episodes, s.
+    /// Mean time to the target over the successful episodes, s.
     pub time_to_target_mean_s: f64,
+    /// 95th percentile of the time to the target over the successful episodes, s.
     pub time_to_target_p95_s: f64,
     /// Length walked over the straight line from start to arrival.
     pub path_ratio: f64,

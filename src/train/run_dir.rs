@@ -25,6 +25,7 @@ pub struct Summary {
     /// Level of the curriculum at the end; the success is of the hardest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub level: Option<u32>,
+    /// Levels of the curriculum passed by the end: all of them, if the hardest was passed too.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub levels_passed: Option<u32>,
     /// What it was trained on.

@@ -23,9 +23,13 @@ pub const STAT_NAMES: [&str; 6] = [
 /// Environments to be opened.
 #[derive(Clone, Copy, Debug)]
 pub struct EnvConfig {
+    /// Task with its choices.
     pub task: LocomotionTask,
+    /// Number of environments.
     pub envs: usize,
+    /// Seed of everything random in them.
     pub seed: u32,
+    /// Level of the curriculum that they begin on, from 0; the plane has none.
     pub level: u32,
 }
 

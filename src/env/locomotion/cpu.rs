@@ -26,6 +26,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct CpuLocomotion {
     matcher: Arc<MotionMatcher>,
     spec: EnvSpec,
+    /// What the kernels' parameters depend on: the task, the level, the steps so far.
     pub params: KernelParams,
     /// `[2][TRAJECTORY_DIM]`: mean and scale of the trajectory features.
     normal: Vec<f32>,

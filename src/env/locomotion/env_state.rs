@@ -10,6 +10,7 @@ use crate::kernels::locomotion::locomotion_layout::{
 pub struct EnvState {
     /// Steps so far: the counter of the random numbers.
     pub step_counter: u32,
+    /// Level of the curriculum, from 0.
     pub level: u32,
     /// `[state_f32::FIELDS][envs]`
     pub state_f32: Vec<f32>,

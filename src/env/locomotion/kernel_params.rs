@@ -14,15 +14,19 @@ use crate::motion::features::FRAMES_PER_STEP;
 /// What the parameters depend on.
 #[derive(Clone, Debug)]
 pub struct KernelParams {
+    /// Task with its choices.
     pub task: LocomotionTask,
+    /// Number of environments.
     pub envs: usize,
     /// Number of the first environment in its batch.
     pub first: usize,
     /// Candidates of the database.
     pub candidates: usize,
+    /// Seed of the random numbers.
     pub seed: u32,
     /// Steps of the run so far: the random numbers' counter.
     pub step_counter: u32,
+    /// Level of the curriculum, from 0: new episodes are as hard as it says.
     pub level: u32,
     /// Where this step's rewards and terminations begin in the columns they are written to.
     pub offset: usize,
@@ -60,6 +64,7 @@ impl KernelParams {
         }
     }
 
+    /// Parameters of the kernel `obstacle_collision`.
     pub fn obstacle_collision(&self) -> obstacle_collision::Params {
         obstacle_collision::Params {
             envs: self.envs as u32,
@@ -69,6 +74,7 @@ impl KernelParams {
         }
     }
 
+    /// Parameters of the kernel `move_obstacles`: one step.
     pub fn move_obstacles(&self) -> move_obstacles::Params {
         move_obstacles::Params {
             envs: self.envs as u32,
@@ -78,6 +84,7 @@ impl KernelParams {
         }
     }
 
+    /// Parameters of the kernel `advance_and_reward`: the task's rewards.
     pub fn advance_and_reward(&self) -> advance_and_reward::Params {
         let (envs, offset) = (self.envs as u32, self.offset as u32);
         match self.task {
@@ -211,6 +218,7 @@ impl KernelParams {
         self.step_counter.wrapping_add(u32::from(!all))
     }
 
+    /// Parameters of the kernel `episode_stats`.
     pub fn episode_stats(&self) -> episode_stats::Params {
         episode_stats::Params {
             envs: self.envs as u32,

@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LocomotionTask {
+    /// A target on an empty plane.
     Plane(Plane),
+    /// A target among moving obstacles.
     Obstacles(Obstacles),
 }
 
@@ -44,8 +46,9 @@ impl Default for Plane {
 pub struct Obstacles {
     /// Obstacles: axis-aligned boxes.
     pub count: u32,
-    /// Their sides are drawn uniformly between these, m.
+    /// Shortest side of an obstacle, m; each side is drawn uniformly up to the longest.
     pub side_min: f32,
+    /// Longest side of an obstacle, m.
     pub side_max: f32,
     /// Half the side of the square around the start in which their centres are drawn and stay, m.
     pub arena_half_extent: f32,
@@ -53,9 +56,11 @@ pub struct Obstacles {
     pub spawn_clearance: f32,
     /// Their speed on the last level, m/s; on the first they stand.
     pub speed: f32,
+    /// Whether all obstacles move at `speed`, or each at its own up to that.
     pub speed_distribution: SpeedDistribution,
-    /// Half the side of the square of targets around the start, on the first and the last level, m.
+    /// Half the side of the square of targets around the start on the first level, m.
     pub target_extent_first: f32,
+    /// Half the side of that square on the last level, m; in between it grows linearly.
     pub target_extent_last: f32,
     /// Width over which a cell of the maps rises from 0 to 1 across an obstacle's edge, m. At 0 it is 1
     /// if its centre lies in an obstacle, and else 0 (the paper's binary sensors).
@@ -69,6 +74,7 @@ pub struct Obstacles {
     pub success_radius: f32,
     /// Steps after which an episode is truncated.
     pub max_steps: u32,
+    /// What is rewarded at every step.
     pub reward: Reward,
     /// Reward for asking for positions outside obstacles: times exp(-hits).
     pub hit_reward: f32,
@@ -198,6 +204,7 @@ impl LocomotionTask {
         }
     }
 
+    /// Steps after which an episode is truncated.
     pub fn max_steps(&self) -> u32 {
         match self {
             LocomotionTask::Plane(plane) => plane.max_steps,

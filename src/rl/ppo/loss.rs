@@ -11,10 +11,15 @@ pub use crate::kernels::learn::ppo_loss::SUMS;
 /// The choices that make up the loss of a minibatch. See [`Ppo`].
 #[derive(Clone, Copy, Debug)]
 pub struct LossCoefficients {
+    /// Clip range of the probability ratio.
     pub clip: f32,
+    /// Largest change of the critic's normalised output that is rewarded; 0 for no limit.
     pub value_clip: f32,
+    /// Weight of the value loss.
     pub value_coefficient: f32,
+    /// Weight of the entropy bonus.
     pub entropy_coefficient: f32,
+    /// Weight of the penalty on the KL divergence, as it is adapted by now.
     pub kl_coefficient: f32,
     /// 1 / samples of the mean.
     pub inv_count: f32,
@@ -43,6 +48,7 @@ pub struct PpoLoss<'a> {
     pub log_std: Range<usize>,
     /// `[action]`, as they were when the policy acted.
     pub old_log_std: &'a Array,
+    /// Weights and clip ranges of the loss.
     pub coefficients: LossCoefficients,
 }
 

@@ -23,6 +23,7 @@ pub struct Ppo {
     pub epochs: usize,
     /// Samples of a gradient step.
     pub minibatch_size: usize,
+    /// Learning rate of Adam, at the start where it is annealed or adapted.
     pub learning_rate: f64,
     /// The learning rate falls linearly to this fraction of itself over `anneal_steps`.
     pub final_lr_fraction: f64,
@@ -32,16 +33,23 @@ pub struct Ppo {
     /// twice this (down to 1e-5), multiplied by 1.5 if under half of it (up to 1e-2). 0 leaves it
     /// alone.
     pub desired_kl: f64,
+    /// Discount factor of a step.
     pub gamma: f32,
+    /// Decay of generalised advantage estimation, per step: 0 for one-step temporal differences, 1 for
+    /// whole returns.
     pub lambda: f32,
     /// Clip range of the probability ratio.
     pub clip: f64,
     /// Largest change of the critic's normalised output that is rewarded; 0 for no limit.
     pub value_clip: f64,
+    /// Weight of the value loss, half the squared error of the critic's normalised output.
     pub value_coefficient: f64,
+    /// Weight of the entropy bonus.
     pub entropy_coefficient: f64,
     /// Weight of a penalty on the KL divergence, adapted towards `kl_penalty_target`; 0 for none.
     pub kl_coefficient: f64,
+    /// KL divergence of an update, in nats, that the penalty aims at: its weight grows by half above twice
+    /// this, and halves below half of it.
     pub kl_penalty_target: f64,
     /// Largest norm of the whole gradient; 0 for no limit.
     pub max_grad_norm: f64,
@@ -49,6 +57,7 @@ pub struct Ppo {
     pub init_log_std: f32,
     /// Whether observations are normalised by their running mean and standard deviation.
     pub normalize_observations: bool,
+    /// Hidden layers of the actor, and of the critic.
     pub network: NetworkConfig,
 }
 

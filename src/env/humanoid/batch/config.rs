@@ -13,9 +13,13 @@ pub const MAX_SPEED: f32 = 1e3;
 /// A batch to be opened.
 #[derive(Clone, Debug)]
 pub struct SimulatorBatchConfig {
+    /// Model that every world simulates.
     pub model: Arc<Model>,
+    /// Number of worlds.
     pub envs: usize,
+    /// Time step and constraint solver.
     pub options: SolverOptions,
+    /// Seed of all random numbers drawn for these worlds.
     pub seed: u32,
     /// Pairs of bodies whose forces on each other are wanted.
     pub force_pairs: Vec<[usize; 2]>,
@@ -48,22 +52,36 @@ impl SimulatorBatchConfig {
             .map_err(|error| anyhow::anyhow!("{error}: use fewer environments"))
     }
 
+    /// Asserts that `targets` holds a target for every drive, `[nu][envs]`.
+    ///
+    /// # Panics
+    /// It has another length.
     pub fn check_targets(&self, targets: &[f32]) {
         let wanted = self.model.nu() * self.envs;
         assert_eq!(targets.len(), wanted, "targets of all drives");
     }
 
+    /// Asserts that `forces` holds a torque and a force for every body, `[bodies * 6][envs]`.
+    ///
+    /// # Panics
+    /// It has another length.
     pub fn check_external_forces(&self, forces: &[f32]) {
         let wanted = 6 * self.model.bodies.len() * self.envs;
         assert_eq!(forces.len(), wanted, "forces on all bodies");
     }
 
+    /// Asserts that `mask` is `[envs]` and `starts` is `[nq + nv][envs]`.
+    ///
+    /// # Panics
+    /// One of them has another length.
     pub fn check_starts(&self, mask: &[u32], starts: &[f32]) {
         assert_eq!(mask.len(), self.envs, "a mask of all worlds");
         let wanted = (self.model.nq() + self.model.nv()) * self.envs;
         assert_eq!(starts.len(), wanted, "starts of all worlds");
     }
 
+    /// Parameters of the kernel `random_targets`: targets of the standard deviation `std`, rad, after
+    /// `step_counter` actions.
     pub fn random_targets(&self, std: f32, step_counter: u32) -> random_targets::Params {
         random_targets::Params {
             envs: self.envs as u32,
@@ -75,6 +93,7 @@ impl SimulatorBatchConfig {
         }
     }
 
+    /// Parameters of the kernel `reset_worlds`.
     pub fn reset_worlds(&self) -> reset_worlds::Params {
         reset_worlds::Params {
             envs: self.envs as u32,

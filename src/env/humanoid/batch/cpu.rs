@@ -18,6 +18,7 @@ const CHUNKS: usize = 4;
 
 /// One world of a batch.
 pub struct SimulatedWorld {
+    /// Positions and velocities, and the forces that the solver is warm-started with.
     pub state: SimulatorState,
     /// Positions and velocities to be reset to, `[nq + nv]`.
     pub start: Vec<f32>,
@@ -33,6 +34,7 @@ pub struct SimulatedWorld {
 /// A batch of worlds on the CPU.
 pub struct CpuSimulatorBatch {
     config: SimulatorBatchConfig,
+    /// All worlds, `[envs]`.
     pub worlds: Vec<SimulatedWorld>,
     /// A workspace for each chunk of worlds.
     workspaces: Vec<Simulator>,
@@ -41,6 +43,7 @@ pub struct CpuSimulatorBatch {
 }
 
 impl CpuSimulatorBatch {
+    /// Worlds at the model's initial positions, at rest, with all targets and external forces zero.
     pub fn new(config: &SimulatorBatchConfig) -> CpuSimulatorBatch {
         let model = &config.model;
         let state = SimulatorState::new(model);

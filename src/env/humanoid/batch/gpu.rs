@@ -17,21 +17,31 @@ use anyhow::Result;
 pub struct GpuSimulatorBatch {
     gpu: Gpu,
     config: SimulatorBatchConfig,
+    /// Model and solver options in words, see [`mod@crate::kernels::physics::model_table`].
     pub model_table: Buffer<u32>,
     geoms: Buffer<f32>,
     force_pairs: Buffer<u32>,
+    /// Positions and velocities, `[nq + nv][envs]`.
     pub state: Buffer<f32>,
-    /// States to be reset to.
+    /// States to be reset to, `[nq + nv][envs]`.
     pub starts: Buffer<f32>,
+    /// Targets of the drives, `[nu][envs]`, rad.
     pub targets: Buffer<f32>,
+    /// Torques and forces at the bodies' centres of mass, in the world's frame, `[bodies * 6][envs]`, Nm
+    /// and N.
     pub external_forces: Buffer<f32>,
+    /// Poses of the bodies in the world, `[bodies * POSE_DIM][envs]`.
     pub poses: Buffer<f32>,
+    /// What [`smooth_dynamics`] leaves for the kernels after it, `[len][envs]`: see
+    /// [`DynamicsLayout`].
     pub dynamics: Buffer<f32>,
     contacts: Buffer<f32>,
     contact_ids: Buffer<u32>,
     counts: Buffer<u32>,
     rows: Buffer<f32>,
     constraints: Buffer<f32>,
+    /// Contact ids and constraint forces of the last step, for the solver to start from,
+    /// `[warm_start_dim][envs]`: see [`warm_start_dim`].
     pub warm_start: Buffer<u32>,
     forces: Buffer<f32>,
     counters: Buffer<u32>,

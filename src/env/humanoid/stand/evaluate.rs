@@ -20,6 +20,7 @@ pub type MeanPolicy<'a> = dyn Fn(&[f32]) -> Vec<f32> + 'a;
 /// How a policy fared.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StandReport {
+    /// Episodes played.
     pub episodes: usize,
     /// Fraction of the episodes that did not end by a fall.
     pub survival: f64,

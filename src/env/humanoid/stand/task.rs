@@ -20,9 +20,11 @@ pub const KEY_BODIES: [&str; 4] = ["right_hand", "left_hand", "right_foot", "lef
 pub struct Stand {
     /// Length of an episode, s; it then ends as a success.
     pub episode_s: f32,
-    /// Heights below which it has fallen, m: of the head, the pelvis, and any body but the feet.
+    /// Height of the head below which the character has fallen, m.
     pub min_head_height: f32,
+    /// Height of the pelvis below which it has fallen, m.
     pub min_pelvis_height: f32,
+    /// Height of any body but the feet below which it has fallen, m.
     pub min_body_height: f32,
     /// Reward of a step for being up.
     pub alive_reward: f32,
@@ -30,17 +32,19 @@ pub struct Stand {
     pub upright_reward: f32,
     /// Reward of a step for joints that do not move, falling with their mean square speed.
     pub stillness_reward: f32,
-    /// Least and largest impulse of a push on the torso, N s. It comes every one to two seconds, in any
-    /// horizontal direction, and lasts a step.
+    /// Least impulse of a push on the torso, N s. Pushes come every one to two seconds, in any
+    /// horizontal direction, and last a step.
     pub min_push: f32,
+    /// Largest impulse of a push, N s.
     pub max_push: f32,
     /// Largest angle by which the joints of a start differ from standing about each axis (hinges: twice),
-    /// and by which the root is tilted, rad.
+    /// rad.
     pub start_joint_angle: f32,
+    /// Largest tilt of the root of a start about each horizontal axis, rad.
     pub start_tilt: f32,
-    /// Largest speeds of a start: of the root along and about each axis, m/s and rad/s, and of the
-    /// joints, rad/s.
+    /// Largest speed of the root of a start along and about each axis, m/s and rad/s.
     pub start_root_speed: f32,
+    /// Largest speed of the joints of a start, rad/s.
     pub start_joint_speed: f32,
 }
 
