@@ -87,4 +87,11 @@ macro_rules! shader_params {
     };
 }
 
-include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
+pub use generated::*;
+
+/// What the build script wrote: a [`Shader`] and the layout of its parameters for each file.
+#[allow(missing_docs)]
+mod generated {
+    use super::*;
+    include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
+}

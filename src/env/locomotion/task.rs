@@ -145,7 +145,7 @@ impl Obstacles {
     };
 
     /// The reading of the paper's reward that can be learned from: as printed, standing about pays
-    /// (`BENCHMARKS.md` compares them).
+    /// (`docs/measurements/2026-11-29.md` compares them).
     pub const PAPER: Obstacles = Obstacles {
         target_clear: true,
         hit_reward_is_penalty: true,

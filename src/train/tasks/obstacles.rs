@@ -38,7 +38,7 @@ fn preset(preset: Preset) -> TaskPreset {
     }
 }
 
-/// Found by measuring: see `BENCHMARKS.md`.
+/// Found by measuring: see `docs/measurements/2026-11-29.md`.
 fn fast_among_obstacles() -> Ppo {
     Ppo {
         rollout_length: 32,
