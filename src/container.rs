@@ -12,47 +12,82 @@ use std::path::{Path, PathBuf};
 /// What went wrong with a file.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
+    /// A file that cannot be read.
     #[error("cannot read {path}: {error}; check that it exists and may be read")]
     Read {
+        /// The file.
         path: PathBuf,
+        /// The operating system's error.
         error: std::io::Error,
     },
+    /// A file that cannot be written; what was in its place is still there.
     #[error(
         "cannot write {path}: {error}; nothing was written: check the folder, its rights and the free space"
     )]
-    Write { path: PathBuf, error: String },
+    Write {
+        /// Where it should be.
+        path: PathBuf,
+        /// The cause.
+        error: String,
+    },
+    /// A file that does not begin as those of footwork do.
     #[error("{path} is not a footwork {}", spelled(.kind))]
-    Foreign { path: PathBuf, kind: &'static str },
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// The kind asked for, see [`Format::kind`].
+        kind: &'static str,
+    },
+    /// A file of footwork, but of another kind.
     #[error("{path} is a footwork {}, not a {}", spelled(.found), spelled(.wanted))]
     OtherKind {
+        /// The file.
         path: PathBuf,
+        /// Its kind.
         found: String,
+        /// The kind asked for.
         wanted: &'static str,
     },
+    /// A file of a later format version.
     #[error(
         "{path} has format version {found}; this program reads up to {known}: use a newer footwork"
     )]
     Newer {
+        /// The file.
         path: PathBuf,
+        /// Its version.
         found: u32,
+        /// The version that this program reads.
         known: u32,
     },
+    /// A file of an earlier format version.
     #[error(
         "{path} has format version {found}, which this program no longer reads ({known} is its own): make it again, or use the footwork that wrote it"
     )]
     Older {
+        /// The file.
         path: PathBuf,
+        /// Its version.
         found: u32,
+        /// The version that this program reads.
         known: u32,
     },
+    /// A file whose checksum or structure is wrong.
     #[error("{path} is damaged ({why}): make it again or take another copy")]
-    Damaged { path: PathBuf, why: String },
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
 }
 
 /// Kind and version of a file.
 #[derive(Clone, Copy)]
 pub struct Format {
+    /// Name of the kind, at most eight bytes.
     pub kind: &'static str,
+    /// Version of what header and arrays hold; readers take no other.
     pub version: u32,
 }
 
@@ -79,6 +114,7 @@ struct Contents<H> {
 pub struct Arrays(Vec<(String, Vec<u8>)>);
 
 impl Arrays {
+    /// Adds an array under a name; its size must be a multiple of four bytes.
     pub fn put<T: bytemuck::Pod>(&mut self, name: &str, values: &[T]) {
         self.0
             .push((name.to_string(), bytemuck::cast_slice(values).to_vec()));
@@ -238,6 +274,9 @@ impl Sections {
 }
 
 /// Writes a file whole or not at all.
+///
+/// # Errors
+/// [`StoreError::Write`], with what was there before left as it was.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     replace(path, bytes).map_err(|error| {
         // Without tempfile's "at path ...": where the temporary file was helps nobody.
@@ -275,6 +314,9 @@ fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 }
 
 /// Writes header and arrays.
+///
+/// # Errors
+/// [`StoreError::Write`].
 pub fn save<H: Serialize>(
     path: &Path,
     format: Format,
@@ -310,6 +352,9 @@ pub fn save<H: Serialize>(
 }
 
 /// Reads header and arrays back.
+///
+/// # Errors
+/// See [`StoreError`].
 pub fn load<H: DeserializeOwned>(path: &Path, format: Format) -> Result<(H, Arrays), StoreError> {
     let bytes = std::fs::read(path).map_err(|error| StoreError::Read {
         path: path.to_path_buf(),

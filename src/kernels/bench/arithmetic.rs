@@ -9,6 +9,7 @@ crate::shader_params! {
     pub struct Params for arithmetic {
         /// Quadruples of numbers.
         pub count: u32,
+        /// Rounds, each of [`OPERATIONS`] for every quadruple.
         pub rounds: u32,
     }
 }
@@ -21,12 +22,15 @@ pub const OPERATIONS: u64 = 2 * 4 * 8 * TIMES as u64;
 const TOGETHER: usize = 4;
 const NUMBERS: usize = 4 * TOGETHER;
 
+/// Queues the shader on `gpu`.
+///
+/// `sums` is `[count][4]`.
 pub fn launch(gpu: &Gpu, sums: &Buffer<f32>, params: &Params) {
     let groups = groups(&shader::ARITHMETIC, params.count as usize);
     gpu.launch(&shader::ARITHMETIC, groups, &[sums], params);
 }
 
-/// `count` must be a multiple of four.
+/// The shader's computation on the host. `params.count` must be a multiple of four.
 pub fn twin(sums: &mut [[f32; 4]], params: &Params) {
     let sums = &mut sums[..params.count as usize];
     let (together, _) = sums.as_flattened_mut().as_chunks_mut::<NUMBERS>();

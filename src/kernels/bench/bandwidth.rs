@@ -16,6 +16,8 @@ crate::shader_params! {
 const ACROSS: u32 = 65_535;
 
 impl Params {
+    /// Parameters that copy so many quadruples, in two dimensions of workgroups where one does not
+    /// suffice.
     pub fn new(count: u32) -> Self {
         Params {
             count,
@@ -24,6 +26,9 @@ impl Params {
     }
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `source` and `copy` are `[count][4]`.
 pub fn launch(gpu: &Gpu, source: &Buffer<f32>, copy: &Buffer<f32>, params: &Params) {
     let down = params.count.div_ceil(params.across);
     gpu.launch(
@@ -34,6 +39,7 @@ pub fn launch(gpu: &Gpu, source: &Buffer<f32>, copy: &Buffer<f32>, params: &Para
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(source: &[[f32; 4]], copy: &mut [[f32; 4]], params: &Params) {
     let count = params.count as usize;
     source[..count]

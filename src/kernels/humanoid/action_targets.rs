@@ -5,6 +5,7 @@ use crate::kernels::physics::strided::scatter;
 
 crate::shader_params! {
     pub struct Params for action_targets {
+        /// Environments of the batch.
         pub envs: u32,
         /// Drives of an environment.
         pub driven: u32,
@@ -13,6 +14,8 @@ crate::shader_params! {
     }
 }
 
+/// Queues the shader on `gpu`.
+///
 /// `action` holds `[envs][driven]` from `params.at` on, `scale` is `[2][driven]`, `targets`
 /// `[driven][envs]`.
 pub fn launch(
@@ -28,7 +31,7 @@ pub fn launch(
     gpu.launch(&shader::ACTION_TARGETS, groups, &buffers, params);
 }
 
-/// The kernel on the CPU.
+/// The shader's computation on the host.
 pub fn twin(action: &[f32], scale: &[f32], targets: &mut [f32], params: &Params) {
     let (envs, driven) = (params.envs as usize, params.driven as usize);
     let mut own = vec![0.0; driven];

@@ -7,9 +7,11 @@ use crate::kernels::rng::{index_below, random4};
 
 crate::shader_params! {
     pub struct Params for draw_starts {
+        /// Environments of the batch.
         pub envs: u32,
         /// Number of the first environment in the whole batch.
         pub first: u32,
+        /// Seed of the random numbers.
         pub seed: u32,
         /// The random numbers' counter, another for every reset.
         pub reset_counter: u32,
@@ -20,6 +22,8 @@ crate::shader_params! {
     }
 }
 
+/// Queues the shader on `gpu`.
+///
 /// `mask` is `[envs]`, `start_states` `[count][width]`, `starts` `[width][envs]`.
 pub fn launch(
     gpu: &Gpu,
@@ -33,7 +37,7 @@ pub fn launch(
     gpu.launch(&shader::DRAW_STARTS, groups, &buffers, params);
 }
 
-/// The kernel on the CPU.
+/// The shader's computation on the host.
 pub fn twin(mask: &[u32], start_states: &[f32], starts: &mut [f32], params: &Params) {
     let envs = params.envs as usize;
     for env in (0..envs).filter(|&env| mask[env] != 0) {

@@ -4,6 +4,7 @@ use crate::gpu::{Buffer, Gpu, shader};
 
 crate::shader_params! {
     pub struct Params for episode_sums {
+        /// Environments of the batch.
         pub envs: u32,
         /// First of the fields to be summed.
         pub start: u32,
@@ -19,7 +20,7 @@ pub fn launch(gpu: &Gpu, values: &Buffer<f32>, sums: &Buffer<f32>, params: &Para
     gpu.launch(&shader::EPISODE_SUMS, groups, &[values, sums], params);
 }
 
-/// The kernel on the CPU.
+/// The shader's computation on the host.
 pub fn twin(values: &mut [f32], sums: &mut [f32], params: &Params) {
     let envs = params.envs as usize;
     let fields = values[params.start as usize * envs..].chunks_exact_mut(envs);

@@ -8,9 +8,11 @@ use std::f32::consts::TAU;
 
 crate::shader_params! {
     pub struct Params for random_pushes {
+        /// Environments of the batch.
         pub envs: u32,
         /// Number of the first environment in the whole batch.
         pub first: u32,
+        /// Seed of the random numbers.
         pub seed: u32,
         /// Steps of the run so far: the random numbers' counter.
         pub step_counter: u32,
@@ -20,12 +22,15 @@ crate::shader_params! {
         pub jitter: u32,
         /// The body that is pushed.
         pub body: u32,
-        /// Least and largest force, N.
+        /// Smallest force, N.
         pub min_force: f32,
+        /// Largest force, N.
         pub max_force: f32,
     }
 }
 
+/// Queues the shader on `gpu`.
+///
 /// `external_forces` is `[bodies * 6][envs]`, torque and force; but for the horizontal force on the
 /// body, it is left as it is.
 pub fn launch(gpu: &Gpu, external_forces: &Buffer<f32>, params: &Params) {
@@ -33,7 +38,7 @@ pub fn launch(gpu: &Gpu, external_forces: &Buffer<f32>, params: &Params) {
     gpu.launch(&shader::RANDOM_PUSHES, groups, &[external_forces], params);
 }
 
-/// The kernel on the CPU.
+/// The shader's computation on the host.
 pub fn twin(external_forces: &mut [f32], params: &Params) {
     let envs = params.envs as usize;
     for env in 0..envs {

@@ -11,29 +11,41 @@ use glam::Quat;
 
 crate::shader_params! {
     pub struct Params for stand_reward {
+        /// Environments of the batch.
         pub envs: u32,
         /// Index of the step's first reward and termination.
         pub at: u32,
-        /// Positions and velocities of a world.
+        /// Positions of a world.
         pub nq: u32,
+        /// Velocities of a world.
         pub nv: u32,
+        /// Bodies of a world.
         pub bodies: u32,
+        /// Index of the head.
         pub head: u32,
+        /// Index of the pelvis.
         pub pelvis: u32,
+        /// Index of the torso.
         pub torso: u32,
+        /// Index of the right foot.
         pub right_foot: u32,
+        /// Index of the left foot.
         pub left_foot: u32,
         /// Steps of an episode.
         pub max_steps: u32,
-        /// Heights below which it has fallen, m: of the head, the pelvis, and all bodies but the feet.
+        /// Height of the head below which the character has fallen, m.
         pub min_head: f32,
+        /// Height of the pelvis below which the character has fallen, m.
         pub min_pelvis: f32,
+        /// Height of any body but the feet below which the character has fallen, m.
         pub min_body: f32,
         /// m/s and rad/s; what is faster has diverged.
         pub max_speed: f32,
-        /// Weights of the terms.
+        /// Reward of every step that has not diverged.
         pub alive_reward: f32,
+        /// Weight of [`uprightness`] in the reward.
         pub upright_reward: f32,
+        /// Weight of [`stillness`] in the reward.
         pub stillness_reward: f32,
     }
 }
@@ -44,9 +56,11 @@ pub const FIELDS: usize = at::FIELDS as usize;
 pub const LIMIT: usize = at::LIMIT as usize;
 /// First of the sums.
 pub const SUMS: usize = at::SUMS as usize;
-/// Index of a sum.
+/// Index of the number of ended episodes.
 pub const EPISODES: usize = at::EPISODES as usize;
+/// Index of the summed steps of ended episodes.
 pub const STEPS: usize = at::STEPS as usize;
+/// Index of [`uprightness`], summed over the steps of ended episodes.
 pub const UPRIGHTNESS: usize = at::UPRIGHTNESS as usize;
 
 /// Names of the sums, in order.
@@ -62,6 +76,8 @@ pub const STATS: [&str; FIELDS - SUMS] = [
 /// The numbers of an environment's episode.
 pub type Episode = [f32; FIELDS];
 
+/// Queues the shader on `gpu`.
+///
 /// `state` is `[nq + nv][envs]`, `poses` `[bodies * 7][envs]` of that state, `episode`
 /// `[FIELDS][envs]`; `reward` and `termination` take `[envs]` from `params.at` on, `ended` `[envs]`.
 pub fn launch(
@@ -82,7 +98,7 @@ pub fn launch(
     );
 }
 
-/// The kernel on the CPU.
+/// The shader's computation on the host.
 pub fn twin(
     state: &[f32],
     poses: &[f32],

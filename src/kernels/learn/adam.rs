@@ -5,6 +5,7 @@ use multiversion::multiversion;
 
 crate::shader_params! {
     pub struct Params for adam {
+        /// Number of parameters.
         pub parameters: u32,
         /// Learning rate over `1 - beta_1^steps`.
         pub lr: f32,
@@ -15,8 +16,9 @@ crate::shader_params! {
     }
 }
 
-/// Kingma and Ba's, but for the last.
+/// Decay of the gradient's running mean, as Kingma and Ba have it.
 pub const BETA_1: f64 = 0.9;
+/// Decay of the running mean of its square, as Kingma and Ba have it.
 pub const BETA_2: f64 = 0.999;
 const EPSILON: f32 = 1e-5;
 
@@ -40,6 +42,11 @@ pub fn groups(parameters: usize) -> [u32; 3] {
     [groups.min(MOST), groups.div_ceil(MOST), 1]
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `gradient`, `parameters`, `m` and `v` are `[parameters]`: `m` and `v` are the running means of
+/// the gradient and of its square. `norm_partials` is `[NORM_PARTIALS]`, see
+/// [`grad_norm`](super::grad_norm).
 pub fn launch(
     gpu: &Gpu,
     gradient: &Buffer<f32>,
@@ -58,6 +65,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 #[multiversion(targets("x86_64+avx512f+avx512vl+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 pub fn twin(
     gradient: &[f32],

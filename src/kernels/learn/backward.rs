@@ -5,6 +5,7 @@ use crate::gpu::{Argument, Buffer, Gpu, shader};
 
 crate::shader_params! {
     pub struct Params for backward {
+        /// Rows of the minibatch.
         pub rows: u32,
     }
 }

@@ -5,6 +5,7 @@ use crate::gpu::{Argument, Buffer, Gpu, shader};
 
 crate::shader_params! {
     pub struct Params for forward {
+        /// Rows that are evaluated.
         pub rows: u32,
         /// The first sample.
         pub start: u32,

@@ -6,10 +6,13 @@ use crate::kernels::termination;
 
 crate::shader_params! {
     pub struct Params for gae {
+        /// Rows of the rollout: agents that act side by side.
         pub rows: u32,
         /// Length of the rollout.
         pub steps: u32,
+        /// Discount factor of a step.
         pub gamma: f32,
+        /// Decay of later steps' errors: 0 for one-step advantages, 1 for Monte Carlo returns.
         pub lambda: f32,
         /// Terminations after which the value of the final observation goes on, `1 << termination`.
         pub bootstrap: u32,
@@ -18,6 +21,12 @@ crate::shader_params! {
     }
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `reward` and `termination` are `[steps][rows]`, `log_prob_and_value` and `advantage_and_return`
+/// `[2][steps][rows]`, `next_value` is `[rows]` and `final_value` `[final_steps][rows]`. Values are
+/// normalised; `scale` begins with the mean and standard deviation that undo it. Advantages and
+/// returns are in units of reward.
 pub fn launch(
     gpu: &Gpu,
     reward: &Buffer<f32>,
@@ -46,6 +55,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     reward: &[f32],
     termination: &[u32],

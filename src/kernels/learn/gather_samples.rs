@@ -6,9 +6,11 @@ use crate::gpu::{Buffer, Gpu, shader};
 
 crate::shader_params! {
     pub struct Params for gather_samples {
+        /// Samples of the rollout.
         pub samples: u32,
-        /// Numbers of an observation, and of an action.
+        /// Numbers of an observation.
         pub observation: u32,
+        /// Numbers of an action.
         pub action: u32,
     }
 }
@@ -24,6 +26,12 @@ pub fn width(observation: usize, action: usize) -> usize {
     observation + 2 * action + SCALARS
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `order` is `[samples]`, `observation` `[samples][observation]`, `action` and `mean` are
+/// `[samples][action]`, `log_prob_and_value` and `advantage_and_return` `[2][samples]`; `scale` has
+/// the fields of [`rollout_moments`](super::rollout_moments), and `samples` is `[samples][width]`,
+/// see [`width`].
 pub fn launch(
     gpu: &Gpu,
     order: &Buffer<u32>,
@@ -61,6 +69,7 @@ pub fn launch(
 /// Workgroups along x: WebGPU launches no more in a dimension.
 const GROUPS: u32 = 65_535;
 
+/// The shader's computation on the host.
 pub fn twin(
     order: &[u32],
     observation: &[f32],

@@ -7,6 +7,8 @@ use multiversion::multiversion;
 /// Parts that the squares are added up in.
 pub const NORM_PARTIALS: usize = wgsl::NORM_PARTIALS as usize;
 
+/// Queues the shader on `gpu`.
+///
 /// `parameters` holds the gradient's length.
 pub fn launch(
     gpu: &Gpu,
@@ -23,6 +25,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 #[multiversion(targets("x86_64+avx512f+avx512vl+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 pub fn twin(gradient: &[f32], norm_partials: &mut [f32]) {
     norm_partials.fill(0.0);

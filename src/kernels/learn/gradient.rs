@@ -13,6 +13,8 @@ pub fn groups(layout: &BatchLayout) -> [u32; 3] {
     ]
 }
 
+/// Queues the shader on `gpu`.
+///
 /// `groups` as [`groups`] says.
 pub fn launch(
     gpu: &Gpu,

@@ -22,21 +22,26 @@ const MAX_PARTIALS: usize = 1 << 22;
 
 const _: () = assert!(wgsl::BLOCK as usize == BLOCK && wgsl::LANES == LANES);
 
-/// What a layer does to its sums.
+/// Activation that leaves the sums as they are.
 pub const IDENTITY: u32 = wgsl::IDENTITY;
+/// Activation that replaces negative sums by zero.
 pub const RELU: u32 = wgsl::RELU;
+/// Activation by the hyperbolic tangent.
 pub const TANH: u32 = wgsl::TANH;
 
 /// A dense layer.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct LayerWords {
+    /// Number of inputs.
     pub inputs: u32,
+    /// Number of outputs.
     pub outputs: u32,
     /// Where in the parameters its weights `[inputs][outputs]` begin; its biases follow.
     pub weights: u32,
-    /// Columns of the inputs and of the outputs.
+    /// Column of a row where the inputs begin.
     pub input_col: u32,
+    /// Column of a row where the outputs begin.
     pub output_col: u32,
     /// [`IDENTITY`], [`RELU`] or [`TANH`].
     pub activation: u32,
@@ -46,16 +51,20 @@ pub struct LayerWords {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct BatchHead {
+    /// Rows of the batch.
     pub rows: u32,
     /// Numbers of a row: the observation, once for each network, then the outputs of every layer, then
     /// the extras.
     pub row_stride: u32,
-    /// Gradients are summed over so many parts of `split_blocks` blocks.
+    /// Parts over which gradients are summed, each by itself.
     pub splits: u32,
+    /// Blocks of a part; the last may have fewer.
     pub split_blocks: u32,
+    /// Number of parameters: those of the networks, and those behind them.
     pub parameters: u32,
     /// Sums of the objective.
     pub sums: u32,
+    /// Number of networks.
     pub networks: u32,
     /// Layers of all networks, and one without inputs: the extras.
     pub layers: u32,
@@ -68,6 +77,7 @@ pub struct BatchHead {
 /// Networks, and so many rows, on a GPU.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BatchLayout {
+    /// What all layers share.
     pub head: BatchHead,
     /// The layers of one network after those of another; last one without inputs for the extras: the
     /// gradients of the parameters behind the networks', then the objective's sums.

@@ -6,6 +6,7 @@ use crate::gpu::{Argument, Buffer, Gpu, groups, shader};
 
 crate::shader_params! {
     pub struct Params for ppo_loss {
+        /// Rows of the minibatch.
         pub rows: u32,
         /// The first sample.
         pub start: u32,
@@ -15,8 +16,11 @@ crate::shader_params! {
         pub clip: f32,
         /// Largest change of the critic's output that is rewarded; 0 for no limit.
         pub value_clip: f32,
+        /// Weight of the value loss.
         pub value_coefficient: f32,
+        /// Weight of the entropy bonus.
         pub entropy_coefficient: f32,
+        /// Weight of the penalty on the KL divergence.
         pub kl_coefficient: f32,
         /// 1 / rows of the mean.
         pub inv_count: f32,
@@ -30,6 +34,8 @@ pub const SUMS: usize = shader::ppo_loss::constants::SUMS as usize;
 const SCALARS: usize = 4;
 const HALF_LOG_TAU: f32 = 0.918_938_5;
 
+/// Queues the shader on `gpu`.
+///
 /// `dims`: numbers of an observation, where `log_std` begins, numbers of an action.
 pub fn launch(
     gpu: &Gpu,

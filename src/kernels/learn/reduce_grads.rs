@@ -2,6 +2,11 @@
 
 use crate::gpu::{Argument, Buffer, Gpu, groups, shader};
 
+/// Queues the shader on `gpu`.
+///
+/// `layout` is [`BatchLayout::words`](super::network::BatchLayout::words), `partials`
+/// `[splits][parameters + sums]`; `gradient`, `[parameters]`, is overwritten, `sums`, `[sums]`,
+/// added to.
 pub fn launch(
     gpu: &Gpu,
     layout: &Buffer<u32>,

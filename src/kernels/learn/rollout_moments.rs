@@ -4,6 +4,7 @@ use crate::gpu::{Buffer, Gpu, shader};
 
 crate::shader_params! {
     pub struct Params for rollout_moments {
+        /// Samples of the rollout.
         pub samples: u32,
         /// Weight of this rollout in the running moments of the returns.
         pub weight: f32,
@@ -12,23 +13,33 @@ crate::shader_params! {
 
 /// Fields of `scale`.
 pub mod scale {
-    /// Mean and standard deviation that the critic's outputs of the rollout are in.
+    /// Mean by which the critic's outputs of the rollout were normalised.
     pub const OLD_MEAN: usize = 0;
+    /// Standard deviation by which the critic's outputs of the rollout were normalised.
     pub const OLD_STD: usize = 1;
-    /// Those of the running moments with this rollout's returns taken in.
+    /// Running mean of the returns, with this rollout's taken in.
     pub const NEW_MEAN: usize = 2;
+    /// Running standard deviation of the returns, with this rollout's taken in.
     pub const NEW_STD: usize = 3;
-    /// Of the advantages.
+    /// Mean of the advantages.
     pub const ADVANTAGE_MEAN: usize = 4;
+    /// Standard deviation of the advantages.
     pub const ADVANTAGE_STD: usize = 5;
     /// 1 - variance of the critic's error / variance of its target.
     pub const EXPLAINED_VARIANCE: usize = 6;
+    /// Number of fields.
     pub const FIELDS: usize = 7;
 }
 
 /// Least standard deviation of the returns.
 const MIN_STD: f64 = 1e-3;
 
+/// Queues the shader on `gpu`.
+///
+/// `log_prob_and_value` and `advantage_and_return` are `[2][samples]`: the values normalised,
+/// advantages and returns in units of reward. `moments` is the running mean and mean square of the
+/// returns. `scale`, `[scale::FIELDS]`, comes with the old mean and standard deviation, and leaves
+/// with all fields.
 pub fn launch(
     gpu: &Gpu,
     log_prob_and_value: &Buffer<f32>,
@@ -45,8 +56,7 @@ pub fn launch(
     );
 }
 
-/// `moments`: running mean and mean square of the returns. `scale` comes with the old mean and
-/// standard deviation, and leaves with all fields.
+/// The shader's computation on the host.
 pub fn twin(
     log_prob_and_value: &[f32],
     advantage_and_return: &[f32],

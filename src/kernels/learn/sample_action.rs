@@ -13,6 +13,7 @@ crate::shader_params! {
         pub row: u32,
         /// Their first row's number in its batch: random numbers are drawn by it.
         pub first: u32,
+        /// Seed of the random numbers.
         pub seed: u32,
         /// Steps of the run so far: the random numbers' counter.
         pub step_counter: u32,
@@ -22,6 +23,11 @@ crate::shader_params! {
 const NOISE: u32 = 0x4e4f_4953;
 const HALF_LOG_TAU: f32 = 0.918_938_5;
 
+/// Queues the shader on `gpu`.
+///
+/// `mean` and `action` are `[..][action]` and `log_prob` is `[..]`, read and written from
+/// `params.row` on; `log_std` is `[action]`. `log_prob` is the natural logarithm of the density at
+/// the action.
 pub fn launch(
     gpu: &Gpu,
     mean: &Buffer<f32>,
@@ -39,6 +45,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     mean: &[f32],
     log_std: &[f32],

@@ -1,4 +1,4 @@
-//! Plays six frames, rewards and ends. Shader: `shaders/world/step.wgsl`.
+//! Plays six frames, rewards and ends. Shader: `shaders/locomotion/advance_and_reward.wgsl`.
 
 use super::locomotion_layout::{state_f32, state_u32};
 use crate::gpu::groups;
@@ -10,6 +10,7 @@ use crate::motion::features::FRAMES_PER_STEP;
 
 crate::shader_params! {
     pub struct Params for advance_and_reward {
+        /// Environments of the batch.
         pub envs: u32,
         /// Where this step's rewards and ends begin.
         pub offset: u32,
@@ -21,6 +22,7 @@ crate::shader_params! {
         pub progress: f32,
         /// Reward for asking for clear ground: times exp(-hits) - shift.
         pub clear: f32,
+        /// What is taken from exp(-hits): 1 turns that reward into a penalty, 0 leaves it a reward.
         pub shift: f32,
         /// Reward on arrival.
         pub bonus: f32,
@@ -29,6 +31,12 @@ crate::shader_params! {
     }
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `candidates` is `[candidates]`, the database frame of each; `matched` `[envs]`, the candidate
+/// found by the search; `motion` `[candidates][5]`, the numbers of each [`RootMotion`], in the
+/// character frame. `state_f32` is `[state_f32::FIELDS][envs]`, `state_u32`
+/// `[state_u32::FIELDS][envs]`; `reward` and `termination` take `[envs]` from `params.offset` on.
 pub fn launch(
     gpu: &Gpu,
     candidates: &Buffer<u32>,
@@ -57,6 +65,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     candidates: &[u32],
     matched: &[u32],

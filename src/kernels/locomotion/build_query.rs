@@ -1,5 +1,5 @@
 //! Motion-matching queries: pose of the frame now shown, trajectory from the action.
-//! Shader: `shaders/world/query.wgsl`.
+//! Shader: `shaders/locomotion/build_query.wgsl`.
 
 use super::locomotion_layout::state_u32;
 use crate::gpu::groups;
@@ -8,12 +8,18 @@ use crate::motion::features::{FEATURE_DIM, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM}
 
 crate::shader_params! {
     pub struct Params for build_query {
+        /// Environments of the batch.
         pub envs: u32,
         /// Where the first number of the actions is.
         pub action_at: u32,
     }
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `features` is `[frames][ROW_STRIDE]`, `queries` `[envs][ROW_STRIDE]`, `action`
+/// `[envs][TRAJECTORY_DIM]` from `params.action_at` on, all normalised; `state_u32` is
+/// `[state_u32::FIELDS][envs]`.
 pub fn launch(
     gpu: &Gpu,
     features: &Buffer<f32>,
@@ -31,6 +37,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     features: &[[f32; ROW_STRIDE]],
     state_u32: &[u32],

@@ -1,10 +1,11 @@
-//! Sums up the episodes that ended. Shader: `shaders/world/tally.wgsl`.
+//! Sums up the episodes that ended. Shader: `shaders/locomotion/episode_stats.wgsl`.
 
 use super::locomotion_layout::{state_f32, state_u32};
 use crate::gpu::{Buffer, Gpu, shader};
 
 crate::shader_params! {
     pub struct Params for episode_stats {
+        /// Environments of the batch.
         pub envs: u32,
     }
 }
@@ -12,6 +13,10 @@ crate::shader_params! {
 /// Numbers of a tally: episodes, successes, collisions, truncations, steps, summed return.
 pub const SUMS: usize = 6;
 
+/// Queues the shader on `gpu`.
+///
+/// `state_f32` is `[state_f32::FIELDS][envs]`, `state_u32` `[state_u32::FIELDS][envs]`; what is
+/// summed up there becomes zero. `sums` is `[SUMS]`.
 pub fn launch(
     gpu: &Gpu,
     state_f32: &Buffer<f32>,
@@ -27,6 +32,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(state_f32: &mut [f32], state_u32: &mut [u32], sums: &mut [f32], params: &Params) {
     let envs = params.envs as usize;
     let mut count = |field: usize| {

@@ -1,5 +1,5 @@
 //! Asked-for positions that lie in an obstacle (paper, equation 5). Shader:
-//! `shaders/world/hits.wgsl`.
+//! `shaders/locomotion/hits.wgsl`.
 
 use super::locomotion_layout::{boxes, state_f32, state_u32};
 use super::obstacles::inside;
@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 crate::shader_params! {
     pub struct Params for hits {
+        /// Environments of the batch.
         pub envs: u32,
         /// Where the first number of the actions is.
         pub action_at: u32,
@@ -21,6 +22,12 @@ crate::shader_params! {
 
 const ASKED: usize = 3;
 
+/// Queues the shader on `gpu`.
+///
+/// `action` is `[envs][TRAJECTORY_DIM]` from `params.action_at` on, normalised; `normal`
+/// `[2][TRAJECTORY_DIM]`, mean and scale of the trajectory features: a feature is
+/// `action / scale + mean`. `boxes` is `[envs][boxes::FIELDS][count]`, `state_f32`
+/// `[state_f32::FIELDS][envs]`; of `state_u32`, `[state_u32::FIELDS][envs]`, `HITS` is written.
 pub fn launch(
     gpu: &Gpu,
     action: &Buffer<f32>,
@@ -39,6 +46,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     action: &[f32],
     normal: &[f32],

@@ -1,5 +1,5 @@
-//! Places and widths that shaders and Rust share; checked against `shaders/shared/layout.wgsl`
-//! at compile time.
+//! Places and widths that shaders and Rust share; checked at compile time against
+//! `shaders/shared/locomotion_layout.wgsl`.
 
 use crate::gpu::shader::advance_and_reward::constants as wgsl;
 use crate::motion::features::{FEATURE_DIM, FRAMES_PER_STEP, POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
@@ -26,14 +26,17 @@ pub const TARGET_SCALE: f32 = 0.2;
 
 /// Fields of the floating-point state, `state_f32[field * envs + env]`.
 pub mod state_f32 {
-    /// Root on the ground, m.
+    /// x of the root on the ground, m.
     pub const X: usize = 0;
+    /// z of the root on the ground, m.
     pub const Z: usize = 1;
-    /// Unit forward direction.
+    /// x of the unit forward direction in the world.
     pub const HEADING_X: usize = 2;
+    /// z of the unit forward direction in the world.
     pub const HEADING_Z: usize = 3;
-    /// Target on the ground, m.
+    /// x of the target on the ground, m.
     pub const TARGET_X: usize = 4;
+    /// z of the target on the ground, m.
     pub const TARGET_Z: usize = 5;
     /// Rewards of the running episode.
     pub const RETURN: usize = 6;
@@ -41,6 +44,7 @@ pub mod state_f32 {
     pub const TRAVELLED: usize = 7;
     /// Summed returns of the episodes ended since the last tally.
     pub const RETURNS: usize = 8;
+    /// Number of fields.
     pub const FIELDS: usize = 9;
 }
 
@@ -56,23 +60,31 @@ pub mod state_u32 {
     pub const HITS: usize = 3;
     /// 1 if the last step ran into an obstacle.
     pub const HAS_COLLIDED: usize = 4;
-    /// Episodes ended since the last tally, how they ended, and their steps.
+    /// Episodes ended since the last tally.
     pub const EPISODES: usize = 5;
+    /// Episodes ended since the last tally by reaching the target.
     pub const SUCCESSES: usize = 6;
+    /// Episodes ended since the last tally by running into an obstacle.
     pub const COLLISIONS: usize = 7;
+    /// Episodes ended since the last tally by running out of steps.
     pub const TRUNCATIONS: usize = 8;
+    /// Steps of the episodes ended since the last tally.
     pub const LENGTHS: usize = 9;
+    /// Number of fields.
     pub const FIELDS: usize = 10;
 }
 
 /// Fields of the obstacles, `boxes[(env * FIELDS + field) * count + slot]`: axis-aligned boxes.
 pub mod boxes {
-    /// Centre, m.
+    /// x of the centre, m.
     pub const X: usize = 0;
+    /// z of the centre, m.
     pub const Z: usize = 1;
-    /// Half sides, m.
+    /// Half the side along x, m.
     pub const HALF_X: usize = 2;
+    /// Half the side along z, m.
     pub const HALF_Z: usize = 3;
+    /// Number of fields.
     pub const FIELDS: usize = 4;
 }
 

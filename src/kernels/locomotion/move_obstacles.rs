@@ -1,4 +1,4 @@
-//! Moves the obstacles for one step. Shader: `shaders/world/wander.wgsl`.
+//! Moves the obstacles for one step. Shader: `shaders/locomotion/move_obstacles.wgsl`.
 
 use super::locomotion_layout::{VELOCITY_DIM, boxes};
 use super::obstacles::bounce;
@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 crate::shader_params! {
     pub struct Params for move_obstacles {
+        /// Environments of the batch.
         pub envs: u32,
         /// Obstacles of an environment.
         pub count: u32,
@@ -18,6 +19,9 @@ crate::shader_params! {
     }
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `boxes` is `[envs][boxes::FIELDS][count]`, `obstacle_velocity` `[envs][VELOCITY_DIM][count]`.
 pub fn launch(gpu: &Gpu, boxes: &Buffer<f32>, obstacle_velocity: &Buffer<f32>, params: &Params) {
     let groups = groups(
         &shader::MOVE_OBSTACLES,
@@ -31,6 +35,7 @@ pub fn launch(gpu: &Gpu, boxes: &Buffer<f32>, obstacle_velocity: &Buffer<f32>, p
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(boxes: &mut [f32], obstacle_velocity: &mut [f32], params: &Params) {
     let count = params.count as usize;
     if count == 0 {

@@ -1,4 +1,4 @@
-//! What the policy sees. Shader: `shaders/world/observe.wgsl`.
+//! What the policy sees. Shader: `shaders/locomotion/observe.wgsl`.
 
 use super::locomotion_layout::{
     BASE_OBS_DIM, CELLS, FULL, MAP_WORDS, MAPS, ROW, TARGET_SCALE, state_f32, state_u32,
@@ -10,12 +10,13 @@ use crate::motion::features::{POSE_DIM, ROW_STRIDE};
 
 crate::shader_params! {
     pub struct Params for observe {
+        /// Environments of the batch.
         pub envs: u32,
         /// Rows of an environment's maps; 1 without maps.
         pub rows: u32,
         /// Numbers of an observation.
         pub width: u32,
-        /// Where this step's ends begin in `ended`.
+        /// Where this step's ends begin in `termination`.
         pub offset: u32,
         /// Write only the observations of environments that ended in one of these ways, `1 << end`.
         pub only: u32,
@@ -24,6 +25,11 @@ crate::shader_params! {
     }
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `features` is `[frames][ROW_STRIDE]`, normalised; `state_f32` is `[state_f32::FIELDS][envs]`,
+/// `state_u32` `[state_u32::FIELDS][envs]`; `termination` is `[envs]` from `params.offset` on,
+/// `maps` `[envs][MAP_WORDS]`; `observation` takes `[envs][width]` from row `params.to` on.
 pub fn launch(
     gpu: &Gpu,
     features: &Buffer<f32>,
@@ -50,6 +56,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     features: &[[f32; ROW_STRIDE]],
     state_f32: &[f32],

@@ -1,5 +1,5 @@
 //! Whether the character runs into an obstacle at any of the six frames of a step. Shader:
-//! `shaders/world/collide.wgsl`.
+//! `shaders/locomotion/obstacle_collision.wgsl`.
 
 use super::locomotion_layout::{VELOCITY_DIM, boxes, state_f32, state_u32};
 use super::obstacles::{bounce, inside};
@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 crate::shader_params! {
     pub struct Params for obstacle_collision {
+        /// Environments of the batch.
         pub envs: u32,
         /// Obstacles of an environment.
         pub count: u32,
@@ -21,6 +22,14 @@ crate::shader_params! {
     }
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `candidates` is `[candidates]`, the database frame of each; `matched` `[envs]`, the candidate
+/// found by the search; `path` `[frames][4]`, the ground position (m) and heading of every frame in
+/// its clip. `boxes` is `[envs][boxes::FIELDS][count]`, `obstacle_velocity`
+/// `[envs][VELOCITY_DIM][count]`, both from before the step, as is `state_f32`,
+/// `[state_f32::FIELDS][envs]`; of `state_u32`, `[state_u32::FIELDS][envs]`, `HAS_COLLIDED` is
+/// written.
 pub fn launch(
     gpu: &Gpu,
     candidates: &Buffer<u32>,
@@ -49,6 +58,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     candidates: &[u32],
     matched: &[u32],

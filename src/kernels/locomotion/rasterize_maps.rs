@@ -1,4 +1,5 @@
-//! The two obstacle maps of every character (paper, section 4). Shader: `shaders/world/sense.wgsl`.
+//! The two obstacle maps of every character (paper, section 4). Shader:
+//! `shaders/locomotion/rasterize_maps.wgsl`.
 
 use super::locomotion_layout::{
     CELL, CELLS, FULL, MAP_WORDS, ROW, VELOCITY_DIM, boxes, state_f32, state_u32,
@@ -12,6 +13,7 @@ use rayon::prelude::*;
 
 crate::shader_params! {
     pub struct Params for rasterize_maps {
+        /// Environments of the batch.
         pub envs: u32,
         /// Obstacles of an environment.
         pub count: u32,
@@ -30,6 +32,11 @@ crate::shader_params! {
 /// diagonal, and some room for rounding.
 const REACH: f32 = 4.0;
 
+/// Queues the shader on `gpu`.
+///
+/// `boxes` is `[envs][boxes::FIELDS][count]`, `obstacle_velocity` `[envs][VELOCITY_DIM][count]`,
+/// `state_f32` `[state_f32::FIELDS][envs]`, `state_u32` `[state_u32::FIELDS][envs]`, `maps`
+/// `[envs][MAP_WORDS]`.
 pub fn launch(
     gpu: &Gpu,
     boxes: &Buffer<f32>,
@@ -48,6 +55,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     boxes: &[f32],
     obstacle_velocity: &[f32],

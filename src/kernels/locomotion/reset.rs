@@ -1,4 +1,4 @@
-//! Starts new episodes. Shader: `shaders/world/reset.wgsl`.
+//! Starts new episodes. Shader: `shaders/locomotion/reset.wgsl`.
 
 use super::hits::obstructed;
 use super::locomotion_layout::{boxes, state_f32, state_u32};
@@ -9,21 +9,26 @@ use crate::kernels::termination;
 
 crate::shader_params! {
     pub struct Params for reset {
+        /// Environments of the batch.
         pub envs: u32,
         /// The first one's number in its batch: random numbers are drawn by it.
         pub first: u32,
+        /// Candidates of the database; an episode begins at one of them.
         pub candidates: u32,
         /// Obstacles of an environment.
         pub count: u32,
+        /// Seed of the random numbers.
         pub seed: u32,
         /// Steps of the run so far: the random numbers' counter.
         pub step_counter: u32,
-        /// Where this step's ends begin in `ended`.
+        /// Where this step's ends begin in `termination`.
         pub offset: u32,
-        /// 1 to start everywhere, whatever `ended` says.
+        /// 1 to start everywhere, whatever `termination` says.
         pub all: u32,
-        /// Steps after which an episode is truncated, less a random number below `spread`.
+        /// Steps after which an episode is truncated, less a random number below
+        /// `initial_age_jitter`.
         pub max_steps: u32,
+        /// Bound, exclusive, of the random number by which limits differ, steps; 0 for none.
         pub initial_age_jitter: u32,
         /// Half the side of the square of targets around the start, m.
         pub half_side: f32,
@@ -38,6 +43,11 @@ const START: u32 = 0;
 const TARGET: u32 = 1;
 const DRAWS: u32 = 32;
 
+/// Queues the shader on `gpu`.
+///
+/// `candidates` is `[candidates]`, the database frame of each; `termination` `[envs]` from
+/// `params.offset` on, `boxes` `[envs][boxes::FIELDS][count]`. `state_f32` is
+/// `[state_f32::FIELDS][envs]`, `state_u32` `[state_u32::FIELDS][envs]`.
 pub fn launch(
     gpu: &Gpu,
     candidates: &Buffer<u32>,
@@ -55,6 +65,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     candidates: &[u32],
     termination: &[u32],

@@ -1,4 +1,4 @@
-//! Draws the obstacles of new episodes. Shader: `shaders/world/scatter.wgsl`.
+//! Draws the obstacles of new episodes. Shader: `shaders/locomotion/spawn_obstacles.wgsl`.
 
 use super::locomotion_layout::{VELOCITY_DIM, boxes};
 use crate::gpu::groups;
@@ -8,20 +8,23 @@ use crate::kernels::termination;
 
 crate::shader_params! {
     pub struct Params for spawn_obstacles {
+        /// Environments of the batch.
         pub envs: u32,
         /// The first one's number in its batch: random numbers are drawn by it.
         pub first: u32,
         /// Obstacles of an environment.
         pub count: u32,
+        /// Seed of the random numbers.
         pub seed: u32,
         /// Steps of the run so far: the random numbers' counter.
         pub step_counter: u32,
-        /// Where this step's ends begin in `ended`.
+        /// Where this step's ends begin in `termination`.
         pub offset: u32,
-        /// 1 to draw everywhere, whatever `ended` says.
+        /// 1 to draw everywhere, whatever `termination` says.
         pub all: u32,
-        /// Sides of the boxes are drawn uniformly between these, m.
+        /// Shortest side of a box, m; sides are drawn uniformly from there to `side_max`.
         pub side_min: f32,
+        /// Longest side of a box, m.
         pub side_max: f32,
         /// Half the side of the square of their centres around the start, m.
         pub square: f32,
@@ -39,6 +42,10 @@ const DIRECTION: u32 = 1;
 const PLACE: u32 = 3;
 const TRIES: u32 = 29;
 
+/// Queues the shader on `gpu`.
+///
+/// `termination` is `[envs]` from `params.offset` on, `boxes` `[envs][boxes::FIELDS][count]`,
+/// `obstacle_velocity` `[envs][VELOCITY_DIM][count]`.
 pub fn launch(
     gpu: &Gpu,
     termination: &Buffer<u32>,
@@ -58,6 +65,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     termination: &[u32],
     boxes: &mut [f32],

@@ -13,12 +13,20 @@ use rayon::prelude::*;
 
 crate::shader_params! {
     pub struct Params for collision {
+        /// Environments of the batch.
         pub envs: u32,
         /// Contacts an environment has room for.
         pub max_contacts: u32,
     }
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `geoms` is what the function [`geoms`] gives, `tables` the
+/// [`model_table`](fn@super::model_table::model_table), `poses` `[bodies * POSE_DIM][envs]`.
+/// Written are `contacts` `[max_contacts * CONTACT_DIM][envs]` in the world, `contact_ids`
+/// `[max_contacts][envs]`, pair times 8 plus point, and `counts` `[2][envs]`: contacts kept, and
+/// those that found no room.
 pub fn launch(
     gpu: &Gpu,
     geoms: &Buffer<f32>,
@@ -37,6 +45,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     model: &Model,
     poses: &[f32],

@@ -10,6 +10,7 @@ use glam::Vec3;
 
 crate::shader_params! {
     pub struct Params for contact_forces {
+        /// Environments of the batch.
         pub envs: u32,
         /// Contacts an environment has room for.
         pub max_contacts: u32,
@@ -20,13 +21,25 @@ crate::shader_params! {
     }
 }
 
-/// Counters of an environment, and their indices.
+/// Counters of an environment.
 pub const COUNTERS: usize = at::COUNTERS as usize;
+/// Index of the contacts of all steps.
 pub const CONTACTS: usize = at::CONTACTS as usize;
+/// Index of the most contacts of a step.
 pub const PEAK_CONTACTS: usize = at::PEAK_CONTACTS as usize;
+/// Index of the contacts that found no room.
 pub const OVERFLOW: usize = at::OVERFLOW as usize;
+/// Index of the times that an environment diverged and was started anew.
 pub const DIVERGED: usize = at::DIVERGED as usize;
 
+/// Queues the shader on `gpu`.
+///
+/// `tables` is the [`model_table`](fn@super::model_table::model_table), `contacts`
+/// `[max_contacts * CONTACT_DIM][envs]`, `contact_ids` `[max_contacts][envs]`, `counts`
+/// `[2][envs]`: contacts kept, and those that found no room; `warm_start` as
+/// [`solve_and_integrate`](super::solve_and_integrate) leaves it. `force_pairs` holds the number of
+/// pairs, then two bodies each. `forces` is `[(bodies + pairs) * 3][envs]`, N in the world: on
+/// every body, and by the first of each pair on the second. `counters` is `[COUNTERS][envs]`.
 pub fn launch(
     gpu: &Gpu,
     tables: &Buffer<u32>,
@@ -56,6 +69,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     model: &Model,
     contacts: &[f32],

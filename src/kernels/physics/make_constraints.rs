@@ -13,6 +13,7 @@ use glam::Vec3;
 
 crate::shader_params! {
     pub struct Params for make_constraints {
+        /// Environments of the batch.
         pub envs: u32,
         /// Seconds of a step.
         pub dt: f32,
@@ -36,6 +37,13 @@ pub fn rows(model: &Model, max_contacts: usize) -> usize {
     3 * max_contacts + model.joints.len()
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `tables` is the [`model_table`](fn@super::model_table::model_table), `state` `[nq + nv][envs]`,
+/// `dynamics` `[DynamicsLayout::len][envs]`, `contacts` `[max_contacts * CONTACT_DIM][envs]`,
+/// `contact_ids` `[max_contacts][envs]`, `counts` `[2][envs]`: contacts kept, and those that found
+/// no room. Written are `rows`, `[rows][quads][envs][4]`, each over the degrees of freedom in quads
+/// of four, and `constraints`, `[(max_contacts + joints) * CONSTRAINT_DIM][envs]`.
 pub fn launch(
     gpu: &Gpu,
     tables: &Buffer<u32>,
@@ -66,6 +74,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     simulator: &mut Simulator,
     state: &[f32],

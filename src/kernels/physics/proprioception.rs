@@ -13,7 +13,9 @@ use glam::{Quat, Vec2, Vec3};
 
 crate::shader_params! {
     pub struct Params for proprioception {
+        /// Environments of the batch.
         pub envs: u32,
+        /// Characters of an environment.
         pub characters: u32,
         /// Numbers of an observation.
         pub width: u32,
@@ -40,6 +42,8 @@ pub fn width(model: &Model, tree: usize, keys: usize) -> usize {
     1 + 6 + 3 + 3 + numbers.sum::<usize>() + 3 * keys
 }
 
+/// Queues the shader on `gpu`.
+///
 /// `poses` and the velocities in `dynamics` must be of `state`. `characters` holds the number of key
 /// bodies, then of each character its tree and its key bodies; `termination` `[envs]`; `observation`
 /// takes `[envs][characters][width]` from `params.at` on.
@@ -73,7 +77,7 @@ pub fn launch(
     );
 }
 
-/// The kernel on the CPU.
+/// The shader's computation on the host.
 pub fn twin(
     model: &Model,
     state: &[f32],

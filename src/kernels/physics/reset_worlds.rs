@@ -8,6 +8,7 @@ use crate::physics::model::Model;
 
 crate::shader_params! {
     pub struct Params for reset_worlds {
+        /// Environments of the batch.
         pub envs: u32,
         /// Contacts an environment has room for.
         pub max_contacts: u32,
@@ -16,6 +17,12 @@ crate::shader_params! {
     }
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `tables` is the [`model_table`](fn@super::model_table::model_table); `mask`, `[envs]`, is not 0
+/// where to start anew. `starts` and `state` are `[nq + nv][envs]`; `warm_start` is as
+/// [`solve_and_integrate`](super::solve_and_integrate) leaves it, `force_pairs`, `forces` and
+/// `counters` as [`contact_forces`](super::contact_forces) has them.
 pub fn launch(
     gpu: &Gpu,
     tables: &Buffer<u32>,
@@ -45,6 +52,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     model: &Model,
     mask: &[u32],

@@ -11,6 +11,7 @@ use glam::{Quat, Vec3};
 
 crate::shader_params! {
     pub struct Params for smooth_dynamics {
+        /// Environments of the batch.
         pub envs: u32,
         /// Seconds of a step.
         pub dt: f32,
@@ -27,13 +28,18 @@ pub const POSE_DIM: usize = 7;
 /// Where the sections of `dynamics` begin, in numbers of an environment.
 #[derive(Clone, Copy, Debug)]
 pub struct DynamicsLayout {
+    /// Packed factor of the mass matrix, `[nm]`; the axes `[dofs * 6]` lie before it.
     pub factors: usize,
+    /// Unconstrained acceleration whitened by that factor, `[dofs]`.
     pub qacc_whitened: usize,
+    /// Velocities of the bodies about their trees' origins, `[bodies * 6]`.
     pub velocities: usize,
+    /// Numbers of an environment in all.
     pub len: usize,
 }
 
 impl DynamicsLayout {
+    /// Sections for a model.
     pub fn new(model: &Model) -> DynamicsLayout {
         let (dofs, packed) = (model.dofs.len(), model.nm());
         let factors = 6 * dofs;
@@ -48,6 +54,12 @@ impl DynamicsLayout {
     }
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `tables` is the [`model_table`](fn@super::model_table::model_table), `state` `[nq + nv][envs]`,
+/// `targets` `[driven][envs]` (rad), and `external_forces` `[bodies * 6][envs]`: torque (Nm) and
+/// force (N) at the centres of mass. Written are `poses`, `[bodies * POSE_DIM][envs]`, in the
+/// world, and `dynamics`, `[DynamicsLayout::len][envs]`.
 pub fn launch(
     gpu: &Gpu,
     tables: &Buffer<u32>,
@@ -67,6 +79,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     simulator: &mut Simulator,
     state: &[f32],
@@ -129,16 +142,19 @@ pub fn spatial(numbers: &[f32]) -> Spatial {
     }
 }
 
+/// Numbers of spatial vectors, angular before linear: the opposite of [`spatial`].
 pub fn flat(vectors: &[Spatial]) -> Vec<f32> {
     let numbers = |s: &Spatial| [s.angular.to_array(), s.linear.to_array()];
     vectors.iter().flat_map(numbers).flatten().collect()
 }
 
+/// Numbers of a pose: position (m), quaternion x y z w.
 pub fn numbers(pose: &Pose) -> [f32; POSE_DIM] {
     let ([x, y, z], [i, j, k, w]) = (pose.position.to_array(), pose.rotation.to_array());
     [x, y, z, i, j, k, w]
 }
 
+/// A pose of seven numbers: the opposite of [`numbers`].
 pub fn pose(numbers: &[f32]) -> Pose {
     Pose {
         position: Vec3::from_slice(numbers),

@@ -11,6 +11,7 @@ use crate::physics::simulator::{Simulator, SimulatorState};
 
 crate::shader_params! {
     pub struct Params for solve_and_integrate {
+        /// Environments of the batch.
         pub envs: u32,
         /// Seconds of a step.
         pub dt: f32,
@@ -25,6 +26,13 @@ pub fn warm_start_dim(max_contacts: usize, joints: usize) -> usize {
     5 * max_contacts + joints
 }
 
+/// Queues the shader on `gpu`.
+///
+/// `tables` is the [`model_table`](fn@super::model_table::model_table), `state` `[nq + nv][envs]`,
+/// which is advanced, `dynamics` `[DynamicsLayout::len][envs]`; `rows`, `constraints`,
+/// `contact_ids` and `counts` are those of [`make_constraints`](super::make_constraints).
+/// `warm_start`, `[warm_start_dim][envs]`, holds the forces of the step before, as bits, and then
+/// those of this one; see [`warm_start_dim`].
 pub fn launch(
     gpu: &Gpu,
     tables: &Buffer<u32>,
@@ -54,6 +62,7 @@ pub fn launch(
     );
 }
 
+/// The shader's computation on the host.
 pub fn twin(
     simulator: &mut Simulator,
     state: &mut [f32],

@@ -11,7 +11,7 @@ crate::shader_params! {
     }
 }
 
-/// Launches the shader.
+/// Queues the shader on `gpu`.
 pub fn launch(
     gpu: &Gpu,
     distance: &Buffer<f32>,
@@ -27,7 +27,7 @@ pub fn launch(
     );
 }
 
-/// Does on the CPU what the shader does.
+/// The shader's computation on the host.
 pub fn twin(distance: &[f32], candidates: &[u32], matched: &mut [u32], params: &Params) {
     let count = params.count as usize;
     for (at, matched) in matched.iter_mut().enumerate().take(count) {

@@ -22,11 +22,13 @@ crate::shader_params! {
     pub struct BlockRun for search_exact {
         /// Queries.
         pub count: u32,
+        /// Rows searched.
         pub candidates: u32,
         /// Rows a block of scores.
         pub block: u32,
-        /// The blocks compared: `first .. last`.
+        /// First block compared.
         pub first: u32,
+        /// End of the blocks compared, exclusive.
         pub last: u32,
         /// Norm of the longest row.
         pub max_norm: f32,
@@ -55,7 +57,7 @@ impl Params {
     }
 }
 
-/// Launches the shader, as often as it takes to compare every block.
+/// Queues the shader on `gpu`, as often as it takes to compare every block.
 pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,

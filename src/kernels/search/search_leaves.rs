@@ -9,8 +9,9 @@ crate::shader_params! {
     pub struct Params for search_leaves {
         /// Queries.
         pub count: u32,
-        /// The leaves searched: `first .. last`, `first` a multiple of 32.
+        /// First leaf searched, a multiple of 32.
         pub first: u32,
+        /// End of the leaves searched, exclusive.
         pub last: u32,
         /// Bytes stand for numbers from `-range` to `range`.
         pub range: f32,
@@ -22,7 +23,7 @@ crate::shader_params! {
 /// Workgroups along x at most: WebGPU's default limit.
 const ACROSS: usize = 65_535;
 
-/// Launches the shader.
+/// Queues the shader on `gpu`.
 pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,

@@ -9,9 +9,11 @@ crate::shader_params! {
     pub struct Params for search_prune {
         /// Queries.
         pub count: u32,
+        /// Groups of leaves.
         pub groups: u32,
-        /// The leaves tested: `first .. last`, `first` a multiple of 32.
+        /// First leaf tested, a multiple of 32.
         pub first: u32,
+        /// End of the leaves tested, exclusive.
         pub last: u32,
         /// Leaves an invocation tests, a multiple of 32.
         pub run: u32,
@@ -24,7 +26,7 @@ crate::shader_params! {
     }
 }
 
-/// Launches the shader.
+/// Queues the shader on `gpu`.
 pub fn launch(
     gpu: &Gpu,
     boxes: &Buffer<f32>,
@@ -52,7 +54,7 @@ pub fn launch(
     );
 }
 
-/// Does on the CPU what the shader does.
+/// The shader's computation on the host.
 pub fn twin(
     boxes: &[[f32; TRAJECTORY_DIM]],
     distance_codes: &[u8],

@@ -8,6 +8,7 @@ crate::shader_params! {
     pub struct Params for search_score_lanes {
         /// Queries.
         pub count: u32,
+        /// Rows scored.
         pub candidates: u32,
         /// Rows a block.
         pub block: u32,
@@ -20,7 +21,7 @@ crate::shader_params! {
 const QUERIES: u32 =
     shader::search_score_lanes::constants::LANES * shader::search_score_lanes::constants::QUERIES;
 
-/// Launches the shader.
+/// Queues the shader on `gpu`.
 pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,
@@ -42,7 +43,7 @@ pub fn launch(
     );
 }
 
-/// Does on the CPU what the shader does.
+/// The shader's computation on the host.
 pub fn twin(
     rows: &[[f32; ROW_STRIDE]],
     queries: &[[f32; ROW_STRIDE]],

@@ -10,6 +10,7 @@ crate::shader_params! {
     pub struct Params for search_score_tiled {
         /// Queries.
         pub count: u32,
+        /// Rows scored.
         pub candidates: u32,
         /// Rows a block.
         pub block: u32,
@@ -21,7 +22,7 @@ crate::shader_params! {
 /// Queries a workgroup scores.
 const QUERIES: u32 = shader::search_score_tiled::constants::TILE;
 
-/// Launches the shader.
+/// Queues the shader on `gpu`.
 pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,
@@ -43,7 +44,7 @@ pub fn launch(
     );
 }
 
-/// Does on the CPU what the shader does.
+/// The shader's computation on the host.
 pub fn twin(
     rows: &[[f32; ROW_STRIDE]],
     queries: &[[f32; ROW_STRIDE]],

@@ -12,6 +12,7 @@ crate::shader_params! {
     pub struct Params for search_seed {
         /// Queries.
         pub count: u32,
+        /// Groups of leaves.
         pub groups: u32,
         /// Frames of the database.
         pub frames: u32,
@@ -22,7 +23,7 @@ crate::shader_params! {
     }
 }
 
-/// Launches the shader.
+/// Queues the shader on `gpu`.
 pub fn launch(
     gpu: &Gpu,
     rows: &Buffer<f32>,
@@ -53,7 +54,7 @@ pub fn launch(
     );
 }
 
-/// Does on the CPU what the shader does.
+/// The shader's computation on the host.
 pub fn twin(
     rows: &[[f32; ROW_STRIDE]],
     boxes: &[[f32; TRAJECTORY_DIM]],
