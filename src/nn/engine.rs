@@ -1,9 +1,9 @@
 //! Evaluates and differentiates networks on a device.
 
 use super::cpu::CpuEngine;
+use super::extent::{EngineSize, Rows, Samples};
 #[cfg(feature = "gpu")]
 use super::gpu::{fused::Fused, layerwise::Layerwise};
-use super::extent::{EngineSize, Rows, Samples};
 use super::network::Network;
 use super::objective::Objective;
 #[cfg(feature = "gpu")]

@@ -138,7 +138,10 @@ impl RunningMeanStd {
     pub fn load(from: &mut Section, dim: usize) -> Result<RunningMeanStd, SectionError> {
         let count: Vec<f64> = from.take_array("normalizer.count", 1)?;
         let moments = from.take_finite("normalizer.moments", 2 * dim)?;
-        if count[0].is_nan() || count[0] < 0.0 || moments[dim..].iter().any(|&variance| variance < 0.0) {
+        if count[0].is_nan()
+            || count[0] < 0.0
+            || moments[dim..].iter().any(|&variance| variance < 0.0)
+        {
             let message = "its normalizer has a negative number of rows or variance";
             return Err(SectionError(message.to_string()));
         }

@@ -1,8 +1,8 @@
 //! Dimensions that the shaders of an objective read.
 
+use crate::gpu::{Buffer, Gpu};
 use crate::nn::extent::EngineSize;
 use crate::nn::network::Network;
-use crate::gpu::{Buffer, Gpu};
 
 /// See [`GpuBatch::dims`](crate::nn::objective::GpuBatch::dims).
 pub fn dims(gpu: &Gpu, networks: &[Network], size: EngineSize) -> Buffer<u32> {

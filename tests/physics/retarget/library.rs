@@ -44,10 +44,7 @@ fn load<P: AsRef<Path>>(
 fn motions_are_drawn_by_weight_and_times_evenly() {
     const DRAWS: u32 = 200_000;
     let (_, library) = library();
-    let weighted = library
-        .clone()
-        .weighted(&[0.0, 1.0, 3.0])
-        .expect("weights");
+    let weighted = library.clone().weighted(&[0.0, 1.0, 3.0]).expect("weights");
     for (library, shares) in [
         (&library, [4.0 / 7.0, 2.0 / 7.0, 1.0 / 7.0]),
         (&weighted, [0.0, 0.25, 0.75]),
