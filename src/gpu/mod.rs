@@ -1,7 +1,7 @@
 //! The only place that knows wgpu, cubecl and burn's inside.
 //!
 //! - [`device`]: which adapter or processor runs the program;
-//! - [`array`]: arrays of either;
+//! - [`mod@array`]: arrays of either;
 //! - [`shader`]: the validated text and layout of every shader;
 //! - `adapter`: a graphics adapter; `buffer`: arrays on it; `kernel`: the only launch; `tensor`: the
 //!   only bridge between buffers and burn's tensors.

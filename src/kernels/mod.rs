@@ -6,7 +6,7 @@
 //! - [`physics`]: a step of the articulated bodies;
 //! - [`humanoid`]: what tasks of the simulated humanoid add to it;
 //! - [`learn`]: sampling, advantages, and the gradient step of dense networks;
-//! - [`bench`]: what a device could do at most;
+//! - [`mod@bench`]: what a device could do at most;
 //! - [`rng`]: counter-based random numbers that shaders and twins share;
 //! - [`termination`]: how a step ends.
 

@@ -26,7 +26,7 @@ enum Backend {
     #[cfg(feature = "gpu")]
     Fused(Box<Fused>),
     #[cfg(feature = "gpu")]
-    Layerwise(Layerwise),
+    Layerwise(Box<Layerwise>),
 }
 
 impl Engine {
@@ -56,7 +56,7 @@ impl Engine {
             #[cfg(feature = "gpu")]
             Device::Gpu(gpu) => match Fused::new(gpu, &networks, size) {
                 Some(fused) => Backend::Fused(Box::new(fused)),
-                None => Backend::Layerwise(Layerwise::new(gpu, networks, size)?),
+                None => Backend::Layerwise(Box::new(Layerwise::new(gpu, networks, size)?)),
             },
             #[cfg(not(feature = "gpu"))]
             Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
@@ -75,7 +75,7 @@ impl Engine {
     pub fn layerwise(gpu: &Gpu, networks: Vec<Network>, size: EngineSize) -> Result<Self> {
         Ok(Engine {
             observation: networks[0].observation().dim(),
-            backend: Backend::Layerwise(Layerwise::new(gpu, networks, size)?),
+            backend: Backend::Layerwise(Box::new(Layerwise::new(gpu, networks, size)?)),
         })
     }
 

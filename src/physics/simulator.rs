@@ -1,4 +1,4 @@
-//! One world, step by step: what [`step`](Physics::step) computes is what the shaders compute for
+//! One world, step by step: what [`step`](Simulator::step) computes is what the shaders compute for
 //! thousands of worlds, and its parts are their twins.
 
 use super::collision::{DetectedContacts, detect_contacts};

@@ -42,7 +42,7 @@ pub trait SimulatorBatch {
     fn state(&self) -> Result<Vec<f32>>;
 
     /// Mean contact forces of the last action, `[(bodies + pairs) * 3][envs]`, N in the world's frame: on
-    /// every body, and by the first on the second of every pair of [`SimulatorBatchConfig::force_pairs`];
+    /// every body, and by the first on the second of every pair of [`force_pairs`](super::SimulatorBatchConfig::force_pairs);
     /// zero in worlds that have been reset.
     ///
     /// # Errors
