@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 /// A run with its task, its data, and the path of one of its checkpoints.
 pub struct Run {
+    #[cfg(feature = "viewer")]
     pub folder: RunDir,
     pub config: Config,
     pub spec: EnvSpec,
@@ -41,6 +42,7 @@ impl Run {
         // What is to be said of the data was said when the training started.
         let task = (entry.load)(&config)?.task;
         Ok(Run {
+            #[cfg(feature = "viewer")]
             folder,
             config,
             spec,

@@ -81,6 +81,7 @@ pub struct Sim {
 const MAX_ENVS: usize = 1 << 20;
 
 /// What only random actions know.
+#[cfg(feature = "viewer")]
 const RANDOM: [&str; 7] = [
     "envs",
     "device",

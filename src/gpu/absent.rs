@@ -17,8 +17,10 @@ const NONE: NoAdapter = NoAdapter {
 #[derive(Clone)]
 pub struct Gpu {
     never: Infallible,
+    /// The adapter's own name.
     pub name: String,
     pub(super) max_binding: u64,
+    /// Whether it is a software rasteriser.
     pub software: bool,
 }
 

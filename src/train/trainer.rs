@@ -250,9 +250,9 @@ impl<'a> Loop<'a> {
     fn conclude(self, outcome: Result<&'static str>) -> Result<Summary> {
         let Training {
             config,
-            task,
             run,
             device,
+            ..
         } = self.training;
         let wall_s = self.wall_s();
         let mut summary = Summary {
@@ -273,7 +273,7 @@ impl<'a> Loop<'a> {
                 summary.evaluation = self.evaluate(EPISODES)?;
                 run.write_summary(&summary)?;
                 #[cfg(feature = "report")]
-                task.figures(run, &self.rows)?;
+                self.training.task.figures(run, &self.rows)?;
                 Ok(summary)
             }
             Err(error) => {

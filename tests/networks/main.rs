@@ -2,7 +2,10 @@
 //! and products of matrices on the CPU; on lavapipe fused WGSL kernels and tensors. They agree up to
 //! rounding.
 
-#[expect(clippy::disallowed_methods, reason = "on the CPU, in an order that does not change")]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "on the CPU, in an order that does not change"
+)]
 mod autodiff;
 mod refused;
 mod running;

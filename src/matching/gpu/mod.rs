@@ -11,7 +11,10 @@ use brute_force::BruteForceSearch;
 use indexed::IndexedSearch;
 
 /// The search on a GPU for batches of one size.
-#[expect(clippy::large_enum_variant, reason = "one a batch, never moved")]
+#[cfg_attr(
+    feature = "gpu",
+    expect(clippy::large_enum_variant, reason = "one a batch, never moved")
+)]
 pub enum GpuSearch {
     /// By the index: for software adapters.
     Indexed(IndexedSearch),
