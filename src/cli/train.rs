@@ -296,7 +296,12 @@ fn tell(training: Training, summary: &Summary) {
         summary.stopped_by,
         training.task.sentence(&summary.evaluation)
     );
-    println!("see {path}/learning_curve.png, evaluate with `footwork eval {path}`");
+    let figures = if cfg!(feature = "report") {
+        format!("see {path}/learning_curve.png, ")
+    } else {
+        String::new()
+    };
+    println!("{figures}evaluate with `footwork eval {path}`");
     if summary.stopped_by == "interrupt" {
         println!("go on with `footwork train {name} --resume {path}`");
     }
