@@ -5,12 +5,15 @@ use gilrs::{Axis, Button, Gilrs};
 /// A stick nearer to its middle than this rests there.
 const REST: f32 = 0.15;
 
+/// All gamepads there are.
 pub struct Gamepad(Gilrs);
 
 /// A stick pushed: to the right and away from the player, 1 at most together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
+    /// To the right, -1 to 1.
     pub right: f32,
+    /// Away from the user, -1 to 1.
     pub away: f32,
     /// Whether the right shoulder button or trigger is held.
     pub run: bool,
