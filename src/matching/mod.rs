@@ -7,6 +7,24 @@
 //! ([`pca`], [`tree`], [`quantised_boxes`]). Bounds are widened by more than rounding can do, and
 //! distances are those of [`crate::kernels::search::search_exact::squared`]: the result is, bit for
 //! bit, that of [`crate::kernels::search::search_exact::twin`], the lowest index of equals included.
+//!
+//! ```
+//! use footwork::matching::MotionMatcher;
+//! use footwork::motion::{database::Database, normalise::Weights, synthetic};
+//! use std::sync::Arc;
+//!
+//! let (clips, roles) = synthetic::perform(1, 0.5);
+//! let database = Database::build(&clips, roles, Weights::PAPER)?;
+//! let matcher = MotionMatcher::new(Arc::new(database));
+//!
+//! // The features of a candidate are nearest to themselves.
+//! let frame = matcher.database.candidates[40];
+//! let mut query = matcher.database.features[frame as usize];
+//! query[27] = 1.0; // the last number of a query's row
+//! let nearest = matcher.index.nearest(frame, &query);
+//! assert_eq!((nearest.index, nearest.distance), (40, 0.0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod gpu;
 mod index;

@@ -9,9 +9,9 @@ use anyhow::Result;
 use rayon::prelude::*;
 
 /// Normalised numbers are at most this large.
-pub(super) const CLIP: f32 = 10.0;
+const CLIP: f32 = 10.0;
 /// Smaller standard deviations count as this.
-pub(super) const MIN_STD: f32 = 1e-2;
+const MIN_STD: f32 = 1e-2;
 /// Rows whose sums a core takes in one go: what is summed over must not depend on how many there are.
 const CHUNK_ROWS: usize = 1024;
 
@@ -78,7 +78,8 @@ impl RunningMeanStd {
             }
             #[cfg(feature = "gpu")]
             Device::Gpu(gpu) => {
-                let values = moments::normalized(gpu, &self.moments, from, from_at, rows);
+                let values =
+                    moments::normalized(gpu, &self.moments, from, from_at, rows, [MIN_STD, CLIP]);
                 super::gpu::tensors::write(gpu, values, to, to_at);
             }
             #[cfg(not(feature = "gpu"))]

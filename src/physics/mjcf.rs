@@ -71,7 +71,25 @@ fn refuse_large(bytes: usize, path: &Path) -> Result<()> {
     }
 }
 
-/// `file` is what errors call it.
+/// Reads a model from MJCF text. `file` is what errors call it.
+///
+/// # Errors
+/// As [`read`], but for the file.
+///
+/// ```
+/// use footwork::physics::mjcf::parse;
+/// use std::path::Path;
+///
+/// let text = r#"<mujoco><worldbody>
+///   <body pos="0 0 1"><joint type="hinge" axis="0 1 0"/><geom type="capsule" size=".05 .2"/></body>
+/// </worldbody></mujoco>"#;
+/// let model = parse(text, Path::new("pendulum.xml"))?;
+/// assert_eq!((model.bodies.len(), model.nv(), model.nu()), (1, 1, 0));
+///
+/// let error = parse("<mujoco><wordlbody/></mujoco>", Path::new("typo.xml")).unwrap_err();
+/// assert!(error.to_string().contains("typo.xml"));
+/// # Ok::<(), footwork::physics::mjcf::MjcfError>(())
+/// ```
 pub fn parse(text: &str, file: &Path) -> Result<Model> {
     refuse_large(text.len(), file)?;
     let document = Document::parse(text).map_err(|error| MjcfError::Mjcf {

@@ -167,6 +167,23 @@ impl Simulator {
 
     /// Advances a world by one step. `targets`, `[nu]`, are the drives' (see [`efforts`]);
     /// `external_forces`, `[bodies]`, are torques and forces at the centres of mass in the world's frame.
+    ///
+    /// ```
+    /// use footwork::physics::scenes::humanoid;
+    /// use footwork::physics::simulator::{Simulator, SimulatorState, SolverOptions};
+    /// use footwork::physics::spatial::Spatial;
+    /// use std::sync::Arc;
+    ///
+    /// let model = Arc::new(humanoid());
+    /// let mut state = SimulatorState::new(&model);
+    /// let mut simulator = Simulator::new(model.clone(), SolverOptions::fast(&model));
+    /// let (targets, forces) = (vec![0.0; model.nu()], vec![Spatial::ZERO; model.bodies.len()]);
+    /// for _ in 0..120 {
+    ///     simulator.step(&mut state, &targets, &forces);
+    /// }
+    /// // A second later it has not sunk into the ground. Positions begin with the root's, m.
+    /// assert!(state.q[2] > 0.0 && state.q.iter().all(|q| q.is_finite()));
+    /// ```
     pub fn step(
         &mut self,
         state: &mut SimulatorState,

@@ -3,7 +3,6 @@
 use super::tensors::column_sums;
 use crate::gpu::tensor::{from_buffer, to_buffer};
 use crate::gpu::{Array, Gpu};
-use crate::nn::running_mean_std::{CLIP, MIN_STD};
 use burn::tensor::Tensor;
 
 /// Mixes the moments of so many rows in, at a `weight` of their part of all rows.
@@ -26,12 +25,19 @@ pub fn take_in(gpu: &Gpu, moments: &mut Array, values: &Array, rows: usize, weig
     *moments = Array::Gpu(to_buffer(both));
 }
 
-/// Normalised rows `[rows, dim]`.
-pub fn normalized(gpu: &Gpu, moments: &Array, values: &Array, at: usize, rows: usize) -> Tensor<2> {
+/// Normalised rows `[rows, dim]`, with a least standard deviation and a largest magnitude.
+pub fn normalized(
+    gpu: &Gpu,
+    moments: &Array,
+    values: &Array,
+    at: usize,
+    rows: usize,
+    [min_std, clip]: [f32; 2],
+) -> Tensor<2> {
     let [means, variances] = halves(gpu, moments);
-    let std = variances.sqrt().clamp_min(MIN_STD);
+    let std = variances.sqrt().clamp_min(min_std);
     let values = rows_of(gpu, values, at, rows, means.dims()[1]);
-    values.sub(means).div(std).clamp(-CLIP, CLIP)
+    values.sub(means).div(std).clamp(-clip, clip)
 }
 
 /// Means and variances, `[1, dim]` each.

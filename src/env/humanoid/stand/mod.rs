@@ -24,6 +24,32 @@ pub use task::{DT, Stand, spec};
 ///
 /// # Errors
 /// More environments than the device has room for.
+///
+/// ```
+/// use footwork::env::Transition;
+/// use footwork::env::humanoid::stand::{Stand, open};
+/// use footwork::gpu::{Array, Device};
+///
+/// let mut envs = open(&Device::Cpu, &Stand::default(), 0..8, 1)?;
+/// let (spec, rest) = (*envs.spec(), envs.rest_action());
+/// let action = Array::Host(rest.repeat(spec.rows()));
+/// let mut observation = Array::zeroed(&Device::Cpu, spec.rows() * spec.observation.dim());
+/// let mut final_observation = observation.clone();
+/// let mut reward = Array::zeroed(&Device::Cpu, spec.rows());
+/// let mut termination = Array::zeroed(&Device::Cpu, spec.rows());
+/// for _ in 0..5 {
+///     let out = Transition {
+///         step: 0,
+///         reward: &mut reward,
+///         termination: &mut termination,
+///         final_observation: &mut final_observation,
+///     };
+///     envs.step(&action, 0, out);
+/// }
+/// envs.observe(&mut observation, 0);
+/// assert!(reward.host().iter().all(|&reward| reward > 0.0));
+/// # Ok::<(), anyhow::Error>(())
+/// ```
 pub fn open(
     device: &Device,
     stand: &Stand,
