@@ -57,7 +57,7 @@ fn preset(_: Preset) -> TaskPreset {
             },
             ..fast()
         },
-        steps: 2_000_000,
+        steps: 2_300_000,
     }
 }
 

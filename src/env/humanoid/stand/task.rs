@@ -59,9 +59,9 @@ impl Default for Stand {
             upright_reward: 0.5,
             stillness_reward: 0.2,
             min_push: 2.0,
-            max_push: 6.0,
-            start_joint_angle: 0.1,
-            start_tilt: 0.05,
+            max_push: 4.0,
+            start_joint_angle: 0.08,
+            start_tilt: 0.03,
             start_root_speed: 0.1,
             start_joint_speed: 0.2,
         }
