@@ -1,15 +1,15 @@
 // PPO's loss of every row (Schulman et al. 2017, equations 7 to 9): its gradient with respect to the
 // outputs of actor and critic and to log_std, and what is logged of it. One invocation a row.
 //
-// dims          [4]                  numbers of an observation; where log_std begins; numbers of an action;
+// dims         [4]                  numbers of an observation; where log_std begins; numbers of an action;
 //                                    1
-// samples       [..][width]          observation, action, old mean, old log probability, advantage,
+// samples      [..][width]          observation, action, old mean, old log probability, advantage,
 //                                    target, old value
-// parameters    [parameters]
-// old_log_std   [action]
-// outputs       [rows][action] mean, then [rows] value
+// parameters   [parameters]
+// old_log_std  [action]
+// outputs      [rows][action] mean, then [rows] value
 // output_grads  of the same form
-// extras        [rows][action + SUMS]   gradient of log_std; surrogate, value loss, entropy, KL divergence,
+// extras       [rows][action + SUMS]   gradient of log_std; surrogate, value loss, entropy, KL divergence,
 //                                    1 where the ratio is out of the clip range
 
 struct Params {

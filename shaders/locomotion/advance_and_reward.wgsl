@@ -2,14 +2,14 @@
 // One invocation an environment. Paper: equations 3 and 4, and the bonus on arrival; the weights
 // choose among them and their readings.
 //
-// candidates  [candidates]      database frame of every candidate
-// matched     [envs]            candidate found by the search
-// motion      [candidates][5]   six frames of root motion from that frame: x, z, heading x,
+// candidates   [candidates]      database frame of every candidate
+// matched      [envs]            candidate found by the search
+// motion       [candidates][5]   six frames of root motion from that frame: x, z, heading x,
 //                               heading z (character frame, m), path length (m)
-// state_f32        [STATE_F32_FIELDS][envs]
-// state_u32       [STATE_U32_FIELDS][envs]
-// reward      [.. + envs]       written from `offset` on
-// termination       [.. + envs]       written from `offset` on
+// state_f32    [STATE_F32_FIELDS][envs]
+// state_u32    [STATE_U32_FIELDS][envs]
+// reward       [.. + envs]       written from `offset` on
+// termination  [.. + envs]       written from `offset` on
 
 #import locomotion_layout
 #import math

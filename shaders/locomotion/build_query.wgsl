@@ -1,10 +1,10 @@
 // Motion-matching queries: the pose half of the frame now shown, the trajectory half from the
 // action. One invocation an environment.
 //
-// features  [frames][4 * QUADS]
-// state_u32     [STATE_U32_FIELDS][envs]
-// action    [envs][TRAJECTORY_DIM]     normalised
-// queries   [envs][4 * QUADS]      the last number is 1, see search_wide
+// features   [frames][4 * QUADS]
+// state_u32  [STATE_U32_FIELDS][envs]
+// action     [envs][TRAJECTORY_DIM]     normalised
+// queries    [envs][4 * QUADS]      the last number is 1, see search_score_lanes
 
 #import locomotion_layout
 

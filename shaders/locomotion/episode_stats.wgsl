@@ -1,9 +1,9 @@
 // Sums what the episodes ended since the last tally brought, and starts the sums anew.
 // One workgroup; each invocation takes every 64th environment, then a tree joins them.
 //
-// state_f32   [STATE_F32_FIELDS][envs]
+// state_f32  [STATE_F32_FIELDS][envs]
 // state_u32  [STATE_U32_FIELDS][envs]
-// sums   [6]   episodes, successes, collisions, truncations, steps, summed return
+// sums       [6]   episodes, successes, collisions, truncations, steps, summed return
 
 #import locomotion_layout
 

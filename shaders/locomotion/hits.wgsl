@@ -1,11 +1,11 @@
 // How many of the asked-for future positions lie in an obstacle where it is now.
 // Paper: equation 5. One invocation an environment.
 //
-// action  [envs][TRAJECTORY_DIM]    normalised
-// normal  [2][TRAJECTORY_DIM]       mean and scale of the trajectory features: value = action / scale + mean
-// boxes   [envs][BOX][count]
-// state_f32    [STATE_F32_FIELDS][envs]
-// state_u32   [STATE_U32_FIELDS][envs]        HITS is written
+// action     [envs][TRAJECTORY_DIM]    normalised
+// normal     [2][TRAJECTORY_DIM]       mean and scale of the trajectory features: value = action / scale + mean
+// boxes      [envs][BOX][count]
+// state_f32  [STATE_F32_FIELDS][envs]
+// state_u32  [STATE_U32_FIELDS][envs]        HITS is written
 
 #import locomotion_layout
 #import math

@@ -1,7 +1,7 @@
 // Moves the obstacles for one step; they bounce at the square's edge. One invocation an obstacle.
 //
-// boxes   [envs][BOX][count]
-// obstacle_velocity   [envs][VELOCITY_DIM][count]
+// boxes              [envs][BOX][count]
+// obstacle_velocity  [envs][VELOCITY_DIM][count]
 
 #import locomotion_layout
 #import obstacles

@@ -3,9 +3,9 @@
 // an environment: one for each row of its maps, or 1 without maps; the first writes the rest too.
 //
 // features     [frames][4 * QUADS]   normalised features, padded with zeros
-// state_f32         [STATE_F32_FIELDS][envs]
-// state_u32        [STATE_U32_FIELDS][envs]
-// termination        [.. + envs]           read from `offset` on; only rows that ended in one of the ways
+// state_f32    [STATE_F32_FIELDS][envs]
+// state_u32    [STATE_U32_FIELDS][envs]
+// termination  [.. + envs]           read from `offset` on; only rows that ended in one of the ways
 //                                    of `only` (bits, 1 << end) are written
 // maps         [envs][MAPS][CELLS][ROW]   see sense; a full byte is 1
 // observation  [.. + envs][width]    written from `to` on; width is BASE_OBS_DIM + rows * CELLS * MAPS with

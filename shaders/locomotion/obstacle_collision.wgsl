@@ -1,13 +1,13 @@
 // Whether the character runs into an obstacle at any of the six frames it is about to play; the
 // obstacles move along. One invocation an environment.
 //
-// candidates  [candidates]          database frame of every candidate
-// matched     [envs]                candidate found by the search
-// path        [frames][4]           ground place and heading of every frame in its clip
-// boxes       [envs][BOX][count]    where they are before the step
-// obstacle_velocity       [envs][VELOCITY_DIM][count]
-// state_f32        [STATE_F32_FIELDS][envs]         where the character is before the step
-// state_u32       [STATE_U32_FIELDS][envs]        HAS_COLLIDED is written
+// candidates         [candidates]          database frame of every candidate
+// matched            [envs]                candidate found by the search
+// path               [frames][4]           ground place and heading of every frame in its clip
+// boxes              [envs][BOX][count]    where they are before the step
+// obstacle_velocity  [envs][VELOCITY_DIM][count]
+// state_f32          [STATE_F32_FIELDS][envs]         where the character is before the step
+// state_u32          [STATE_U32_FIELDS][envs]        HAS_COLLIDED is written
 
 #import locomotion_layout
 #import math

@@ -5,11 +5,11 @@
 // from where the character is now. Paper: section 4, figure 2, where both are 0. One invocation a row
 // of an environment's maps.
 //
-// boxes  [envs][BOX][count]
+// boxes              [envs][BOX][count]
 // obstacle_velocity  [envs][VELOCITY_DIM][count]
-// state_f32   [STATE_F32_FIELDS][envs]
-// state_u32  [STATE_U32_FIELDS][envs]
-// maps   [envs][MAPS][CELLS][ROW]   a byte a cell, from right to left; rows from behind to ahead
+// state_f32          [STATE_F32_FIELDS][envs]
+// state_u32          [STATE_U32_FIELDS][envs]
+// maps               [envs][MAPS][CELLS][ROW]   a byte a cell, from right to left; rows from behind to ahead
 
 #import locomotion_layout
 #import math

@@ -1,11 +1,11 @@
 // Starts a new episode in every environment whose step ended (or in all of them).
 // One invocation an environment.
 //
-// candidates  [candidates]       database frame of every search candidate
-// termination       [.. + envs]        read from `offset` on
-// boxes       [envs][BOX][count]
-// state_f32        [STATE_F32_FIELDS][envs]      see layout
-// state_u32       [STATE_U32_FIELDS][envs]
+// candidates   [candidates]       database frame of every search candidate
+// termination  [.. + envs]        read from `offset` on
+// boxes        [envs][BOX][count]
+// state_f32    [STATE_F32_FIELDS][envs]      see locomotion_layout
+// state_u32    [STATE_U32_FIELDS][envs]
 
 #import locomotion_layout
 #import obstacles

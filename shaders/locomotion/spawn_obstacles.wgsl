@@ -1,8 +1,8 @@
 // Draws the obstacles of every new episode: sizes, places clear of the start, velocities.
 // One invocation an obstacle.
 //
-// termination  [.. + envs]            read from `offset` on
-// boxes  [envs][BOX][count]
+// termination        [.. + envs]            read from `offset` on
+// boxes              [envs][BOX][count]
 // obstacle_velocity  [envs][VELOCITY_DIM][count]
 
 #import locomotion_layout

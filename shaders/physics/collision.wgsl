@@ -1,11 +1,11 @@
 // Where the shapes of a world touch . One invocation an environment.
 //
-// geoms    [geoms][GEOM_DIM]
+// geoms        [geoms][GEOM_DIM]
 // model_table   see `model_table`
-// poses    [bodies * 7][envs]: position, quaternion x y z w
-// contacts  [max_contacts * 10][envs]: position, normal, first tangent, distance
-// contact_ids     [max_contacts][envs]: pair * 8 + point, the same from step to step
-// counts   [2][envs]: contacts kept, contacts that found no slot
+// poses        [bodies * 7][envs]: position, quaternion x y z w
+// contacts     [max_contacts * 10][envs]: position, normal, first tangent, distance
+// contact_ids  [max_contacts][envs]: pair * 8 + point, the same from step to step
+// counts       [2][envs]: contacts kept, contacts that found no slot
 
 #import model_table
 #import spatial

@@ -2,14 +2,14 @@
 // environment.
 //
 // model_table   see `model_table`
-// contacts  [max_contacts * 10][envs]
-// contact_ids     [max_contacts][envs]
-// counts   [2][envs]: contacts, overflow
+// contacts     [max_contacts * 10][envs]
+// contact_ids  [max_contacts][envs]
+// counts       [2][envs]: contacts, overflow
 // warm_start     see `solve_and_integrate`
 // force_pairs  [1 + force_pairs * 2]: how many, and pairs of bodies
-// forces   [(bodies + force_pairs) * 3][envs], N in the world's frame: on every body, and on the second of
+// forces       [(bodies + force_pairs) * 3][envs], N in the world's frame: on every body, and on the second of
 //          each pair force_pairs by the first
-// counters  [COUNTERS][envs]
+// counters     [COUNTERS][envs]
 
 #import model_table
 #import contacts

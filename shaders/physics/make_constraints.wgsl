@@ -4,8 +4,8 @@
 // model_table       see `model_table`
 // state        [positions + dofs][envs]
 // dynamics     see `smooth_dynamics`
-// contacts      [max_contacts * 10][envs]: position, normal, tangent, distance
-// contact_ids         [max_contacts][envs]: pair * 8 + point
+// contacts     [max_contacts * 10][envs]: position, normal, tangent, distance
+// contact_ids  [max_contacts][envs]: pair * 8 + point
 // counts       [2][envs]: contacts, overflow
 // rows         [max_contacts * 3 + joints][quads][envs], each over the degrees of freedom
 // constraints  [max_contacts + joints][CONSTRAINT_DIM][envs]

@@ -2,9 +2,9 @@
 // that no body has. One invocation an environment.
 //
 // model_table   see `model_table`
-// mask     [envs]: not 0 where to start anew
-// starts   [positions + dofs][envs]: where to
-// state    [positions + dofs][envs]
+// mask      [envs]: not 0 where to start anew
+// starts    [positions + dofs][envs]: where to
+// state     [positions + dofs][envs]
 // warm_start     see `solve_and_integrate`
 // force_pairs  see `contact_forces`
 // forces   see `contact_forces`: none where a world starts anew

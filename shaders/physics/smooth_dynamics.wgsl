@@ -3,11 +3,11 @@
 // tree is then the same for all invocations of a group, which software adapters read once.
 //
 // model_table    see `model_table`
-// state     [positions + dofs][envs], q then v
-// targets   [driven][envs], of the drives, rad
-// external_forces    [bodies * 6][envs], torque and force at the centres of mass
-// poses     [bodies * 7][envs], place and quaternion x y z w, in the world
-// dynamics  [..][envs]: axes [dofs * 6], factor of the mass matrix with armature and what is implicit in the
+// state            [positions + dofs][envs], q then v
+// targets          [driven][envs], of the drives, rad
+// external_forces  [bodies * 6][envs], torque and force at the centres of mass
+// poses            [bodies * 7][envs], place and quaternion x y z w, in the world
+// dynamics         [..][envs]: axes [dofs * 6], factor of the mass matrix with armature and what is implicit in the
 //           drives [packed], mass-qacc_whitened smooth acceleration [dofs], velocities [bodies * 6]; spatial
 //           vectors about a tree's origin
 //

@@ -6,9 +6,9 @@
 // dynamics     see `smooth_dynamics`
 // rows         see `make_constraints`
 // constraints  see `make_constraints`
-// contact_ids         [max_contacts][envs]
+// contact_ids  [max_contacts][envs]
 // counts       [2][envs]
-// warm_start         [max_contacts * 5 + joints][envs]: of the step before, and then of this one, the contacts' contact_ids
+// warm_start   [max_contacts * 5 + joints][envs]: of the step before, and then of this one, the contacts' contact_ids
 //              their edges' forces [max_contacts][4], and the limits' forces, as bit casts
 
 #import model_table

@@ -1,10 +1,10 @@
 // Every environment's character and its target, drawn from the worlds' own buffers: one instance a
 // bone, and one more a target.
 //
-// state_f32    [STATE_F32_FIELDS][envs]
-// state_u32   [STATE_U32_FIELDS][envs]
-// points  [frames][points]   the bones' ends in the character frame, in shares of REACH
-// bones   [bones]
+// state_f32  [STATE_F32_FIELDS][envs]
+// state_u32  [STATE_U32_FIELDS][envs]
+// points     [frames][points]   the bones' ends in the character frame, in shares of REACH
+// bones      [bones]
 
 #import crowd
 #import locomotion_layout

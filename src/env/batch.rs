@@ -56,7 +56,7 @@ impl EnvBatch {
         }
     }
 
-    /// As [`VecEnv::rest_action`].
+    /// An action that keeps an agent as it is: see [`VecEnv::rest_action`].
     pub fn rest_action(&self) -> Vec<f32> {
         self.parts[0].rest_action()
     }
@@ -66,7 +66,7 @@ impl EnvBatch {
         self.parts[0].stat_names()
     }
 
-    /// As [`VecEnv::stats`], of all parts.
+    /// Writes the sums over all parts: see [`VecEnv::stats`].
     pub fn stats(&mut self, out: &mut Array) {
         let (first, rest) = self.parts.split_at_mut(1);
         first[0].stats(out);
@@ -95,7 +95,7 @@ impl EnvBatch {
         }
     }
 
-    /// As [`VecEnv::live_view`], of all parts.
+    /// What there is to see of all parts: see [`VecEnv::live_view`].
     ///
     /// # Errors
     /// The device was lost.

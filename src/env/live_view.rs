@@ -1,14 +1,14 @@
-//! Worlds, seen from outside while they run.
+//! Environments, seen from outside while they run.
 
 use crate::gpu::Shared;
 use crate::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Where worlds keep what there is to see.
+/// Where environments keep what there is to see.
 pub enum LiveView {
     /// The GPU's own buffers: whoever draws on that device reads them in place.
     Gpu(Box<Buffers>),
-    /// The latest step's state of worlds on the CPU.
+    /// The latest step's state of environments on the CPU.
     Cpu(States),
 }
 
@@ -26,7 +26,7 @@ pub struct Buffers {
 #[derive(Clone)]
 pub struct States(pub Vec<Arc<Mutex<State>>>);
 
-/// The same of one part.
+/// The state of one part on the host.
 #[derive(Clone, Debug, Default)]
 pub struct State {
     /// `[state_f32::FIELDS][envs]`
@@ -63,7 +63,7 @@ impl State {
 }
 
 impl States {
-    /// Of all parts together.
+    /// The state of all parts together.
     pub fn now(&self) -> State {
         let locked = |part: &Arc<Mutex<State>>| {
             let state = part.lock().unwrap_or_else(PoisonError::into_inner);

@@ -17,7 +17,7 @@ pub struct ActorCritic {
 }
 
 impl ActorCritic {
-    /// Of actions of `action` numbers.
+    /// Networks for actions of `action` numbers.
     ///
     /// # Errors
     /// There can be no such networks, or not for such observations.

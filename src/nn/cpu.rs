@@ -241,7 +241,7 @@ fn sum_gradients(network: &Network, splits: &[Split], gradient: &mut [f32]) {
 /// What some rows left on their way through a network.
 #[derive(Default)]
 struct Pass {
-    /// Of every layer, `[rows][..]`; the outputs last.
+    /// Activations of every layer, `[rows][..]`; the outputs last.
     inputs: Vec<Vec<f32>>,
     rows: usize,
 }

@@ -67,7 +67,7 @@ impl Engine {
         })
     }
 
-    /// The same in tensors, however narrow the layers are.
+    /// An engine that takes tensors, however narrow the layers are.
     ///
     /// # Errors
     /// The device has no room for that.

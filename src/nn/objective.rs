@@ -12,7 +12,7 @@ pub trait Objective: Sync {
     /// to the `extras`.
     fn loss_gradient(&self, batch: &HostBatch, outputs: &mut [f32], extras: &mut [f32]);
 
-    /// The same on a GPU.
+    /// Queues the gradients and extras of a minibatch on a GPU.
     fn launch(&self, gpu: &Gpu, batch: &GpuBatch);
 }
 

@@ -101,7 +101,7 @@ impl RunningMeanStd {
         }
     }
 
-    /// The same moments in host memory.
+    /// A copy of the moments in host memory.
     ///
     /// # Errors
     /// The device was lost.
@@ -113,7 +113,7 @@ impl RunningMeanStd {
         })
     }
 
-    /// The same moments, which are in host memory, on `device`.
+    /// A copy on `device` of moments in host memory.
     pub fn on(&self, device: &Device) -> RunningMeanStd {
         RunningMeanStd {
             moments: Array::from_slice(device, self.moments.host()),

@@ -120,7 +120,7 @@ pub struct Simulator {
     efforts: Vec<Effort>,
     /// Accelerations without constraints, `[nv]`.
     pub qacc_smooth: Vec<f32>,
-    /// The same, whitened by the factor of the mass matrix: L qacc.
+    /// Unconstrained acceleration, whitened by the factor of the mass matrix: L qacc.
     pub qacc_whitened: Vec<f32>,
     /// Contacts that the last step, or [`forward`](Self::forward), detected.
     pub contacts: DetectedContacts,

@@ -135,7 +135,7 @@ impl KernelParams {
         }
     }
 
-    /// Of all environments; `to`: the first row to write.
+    /// Observations of all environments; `to`: the first row to write.
     pub fn observe(&self, to: usize) -> observe::Params {
         observe::Params {
             envs: self.envs as u32,
@@ -151,7 +151,7 @@ impl KernelParams {
         }
     }
 
-    /// Of the environments whose episode this step ended and whose value goes on.
+    /// Observations of the environments whose episode this step ended and whose value goes on.
     pub fn observe_final(&self, to: usize) -> observe::Params {
         observe::Params {
             only: self.task.bootstrap(),

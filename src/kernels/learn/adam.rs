@@ -23,7 +23,7 @@ pub const BETA_2: f64 = 0.999;
 const EPSILON: f32 = 1e-5;
 
 impl Params {
-    /// Of the `steps`-th step, whose moments are corrected for having begun at zero.
+    /// Parameters of the `steps`-th step, whose moments are corrected for having begun at zero.
     pub fn new(parameters: usize, steps: u64, lr: f64, max_grad_norm: f64) -> Self {
         let steps = steps.min(i32::MAX as u64) as i32;
         Params {

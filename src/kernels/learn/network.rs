@@ -85,7 +85,7 @@ pub struct BatchLayout {
 }
 
 impl BatchLayout {
-    /// Of networks given by their layers, each as inputs, outputs and activation; their parameters lie
+    /// The layout of networks given by their layers, each as inputs, outputs and activation; their parameters lie
     /// one after another, and `parameters` are all there are. None for too many networks.
     pub fn new(
         networks: &[Vec<(usize, usize, u32)>],
@@ -142,7 +142,7 @@ impl BatchLayout {
         Some(BatchLayout { head, layers }.with_rows(rows))
     }
 
-    /// The same networks for so many rows.
+    /// A layout of these networks for so many rows.
     pub fn with_rows(mut self, rows: usize) -> Self {
         let numbers = (self.head.parameters + self.head.sums) as usize;
         let splits = (MAX_PARTIALS / numbers.max(1)).clamp(1, MAX_SPLITS);

@@ -114,7 +114,7 @@ struct Ground<'a> {
     /// `[boxes::FIELDS][count]`
     boxes: &'a [f32],
     count: usize,
-    /// Of every row, the cells' x and z.
+    /// For every row, the cells' x and z.
     points: [[[f32; CELLS]; 2]; CELLS],
     /// The character.
     at: [f32; 2],

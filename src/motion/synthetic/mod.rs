@@ -53,7 +53,7 @@ pub fn perform(seed: u64, minutes: f32) -> (Vec<Clip>, Roles) {
     (clips.collect(), figure::roles())
 }
 
-/// As [`perform`], with the plans behind the clips.
+/// Synthetic locomotion with the plans behind its clips: see [`perform`].
 pub fn takes(seed: u64, minutes: f32) -> Vec<Take> {
     lengths(seed, minutes)
         .into_par_iter()

@@ -84,7 +84,7 @@ pub fn add_product(sums: &mut [f32], a: Matrix, b: Matrix) {
 mod tests {
     use super::*;
 
-    /// Of small whole numbers, so that sums are exact.
+    /// A matrix of small whole numbers, so that sums are exact.
     #[test]
     fn products_are_those_of_the_definition() {
         for [rows, terms, columns] in [[1, 1, 1], [3, 2, 5], [17, 33, 9], [64, 70, 65]] {

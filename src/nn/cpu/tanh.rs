@@ -5,7 +5,7 @@ use multiversion::multiversion;
 /// Beyond this it is 1 in f32.
 const FLAT: f32 = 9.1;
 
-/// Of every value, within 3e-7.
+/// Hyperbolic tangent of every value, within 3e-7.
 #[multiversion(targets(
     "x86_64+avx512f+avx512vl+avx512dq+fma",
     "x86_64+avx2+fma",

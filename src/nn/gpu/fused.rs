@@ -24,7 +24,7 @@ pub struct Fused {
     forward: Layout,
     /// To learn with, one for each size of a minibatch that there was.
     minibatch: Vec<Layout>,
-    /// As [`BatchLayout::at`] says.
+    /// Activations of a minibatch, laid out as [`BatchLayout::at`] says.
     rows: Buffer<f32>,
     grads: Buffer<f32>,
     /// `[rows][outputs]` of each network, and the gradients with respect to them.

@@ -144,7 +144,7 @@ fn widest(network: &Network) -> usize {
 
 /// What a batch left on its way through a network.
 struct Pass {
-    /// Of every layer, `[rows, ..]`.
+    /// Activations of every layer, `[rows, ..]`.
     inputs: Vec<Tensor<2>>,
 }
 

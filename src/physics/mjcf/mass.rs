@@ -40,7 +40,7 @@ impl Mass {
         }
     }
 
-    /// The same, seen from around the frame it is in.
+    /// The mass as seen from around the frame it is in.
     pub fn seen_from(self, frame: &Frame) -> Mass {
         let rotation = DMat3::from_quat(frame.rotation);
         Mass {
