@@ -129,7 +129,7 @@ pub enum ConfigError {
     Settings(String),
     /// A network that cannot be, or not for the task's observations.
     #[error("ppo.network.{0}")]
-    Network(#[from] NetworkError),
+    Network(NetworkError),
     /// A name that no task has.
     #[error("there is no task `{name}`{hint}")]
     Task {
@@ -146,6 +146,13 @@ pub enum ConfigError {
         /// The file.
         path: PathBuf,
     },
+}
+
+// By hand: as its source, an error would be told twice.
+impl From<NetworkError> for ConfigError {
+    fn from(error: NetworkError) -> Self {
+        ConfigError::Network(error)
+    }
 }
 
 impl Config {
