@@ -74,7 +74,7 @@ fn refuse_large(bytes: usize, path: &Path) -> Result<()> {
 /// Reads a model from MJCF text. `file` is what errors call it.
 ///
 /// # Errors
-/// As [`read`], but for the file.
+/// Text that is wrong in one of the ways that [`read`] names.
 ///
 /// ```
 /// use footwork::physics::mjcf::parse;
