@@ -190,6 +190,35 @@ impl Section {
 }
 
 impl Section {
+    /// Saves all that another section holds, under its names behind `name`.
+    pub fn put_section(&mut self, name: &str, section: Section) {
+        for (own, value) in section.values {
+            self.values.insert(format!("{name}.{own}"), value);
+        }
+        for (own, bytes) in section.arrays.0 {
+            self.arrays.0.push((format!("{name}.{own}"), bytes));
+        }
+    }
+
+    /// Takes out what [`Section::put_section`] saved.
+    pub fn take_section(&mut self, name: &str) -> Section {
+        let own = |full: &str| full.strip_prefix(name)?.strip_prefix('.').map(String::from);
+        let mut section = Section::default();
+        for (full, value) in &self.values {
+            if let Some(own) = own(full) {
+                section.values.insert(own, value.clone());
+            }
+        }
+        let (inner, rest) = std::mem::take(&mut self.arrays.0)
+            .into_iter()
+            .partition(|(full, _)| own(full).is_some());
+        self.arrays.0 = rest;
+        let inner: Vec<(String, Vec<u8>)> = inner;
+        let inner = inner.into_iter().filter_map(|(full, bytes)| Some((own(&full)?, bytes)));
+        section.arrays.0 = inner.collect();
+        section
+    }
+
     /// [`Section::take_array`] of floats that must be finite.
     ///
     /// # Errors

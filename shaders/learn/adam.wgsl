@@ -6,6 +6,8 @@
 // parameters     [parameters]
 // m              [parameters]      running mean of the gradient
 // v              [parameters]      and of its square
+// rates          [2]               factors of the learning rate, the second of the parameters from `second`
+//                                  up to `second_end`
 
 #import adam
 
@@ -16,6 +18,8 @@ struct Params {
     bias_correction: f32,
     // Largest norm of the gradient; 0 for no limit.
     max_grad_norm: f32,
+    second: u32,
+    second_end: u32,
 }
 
 @group(0) @binding(0) var<storage, read> gradient: array<f32>;
@@ -23,7 +27,8 @@ struct Params {
 @group(0) @binding(2) var<storage, read_write> parameters: array<f32>;
 @group(0) @binding(3) var<storage, read_write> m: array<f32>;
 @group(0) @binding(4) var<storage, read_write> v: array<f32>;
-@group(0) @binding(5) var<uniform> params: Params;
+@group(0) @binding(5) var<storage, read> rates: array<f32>;
+@group(0) @binding(6) var<uniform> params: Params;
 
 const BETA_1 = 0.9;
 const BETA_2 = 0.999;
@@ -42,5 +47,6 @@ fn adam(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     let mean_square = BETA_2 * v[i] + (1.0 - BETA_2) * grad * grad;
     m[i] = mean;
     v[i] = mean_square;
-    parameters[i] -= params.lr * mean / (sqrt(mean_square * params.bias_correction) + EPSILON);
+    let factor = rates[select(0u, 1u, i >= params.second && i < params.second_end)];
+    parameters[i] -= params.lr * factor * mean / (sqrt(mean_square * params.bias_correction) + EPSILON);
 }

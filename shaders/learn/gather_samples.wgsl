@@ -4,17 +4,18 @@
 // observation           [samples][observation]
 // action                [samples][action]
 // mean                  [samples][action]
-// log_prob_and_value    [2][samples]
-// advantage_and_return  [2][samples]
-// scale                 [7]                       see rollout_moments
-// rows                  [samples][observation + 2 action + 4]   observation, action, mean, log
-//                       probability, normalised advantage, normalised return, the critic's old
-//                       output in the new normalisation
+// log_prob_and_value    [samples], then [samples][streams]
+// advantage_and_return  [2][samples][streams]
+// scale                 [streams][8]              see rollout_moments
+// rows                  [samples][observation + 2 action + 2 + 2 streams]   observation, action, mean, log
+//                       probability, the streams' normalised advantages by their weights, their
+//                       normalised returns, the critic's old outputs in the new normalisation
 
 struct Params {
     samples: u32,
     observation: u32,
     action: u32,
+    streams: u32,
 }
 
 @group(0) @binding(0) var<storage, read> order: array<u32>;
@@ -28,7 +29,7 @@ struct Params {
 @group(0) @binding(8) var<uniform> params: Params;
 
 const LANES = 32u;
-const SCALARS = 4u;
+const FIELDS = 8u;
 const MIN_STD = 1e-6;
 
 @compute @workgroup_size(32)
@@ -42,7 +43,8 @@ fn gather_samples(
     let n = params.samples;
     let seen = params.observation;
     let acted = params.action;
-    let start = sample * (seen + 2u * acted + SCALARS);
+    let streams = params.streams;
+    let start = sample * (seen + 2u * acted + 2u + 2u * streams);
     let origin = order[sample];
     for (var i = lane; i < seen; i += LANES) { rows[start + i] = observation[origin * seen + i]; }
     for (var i = lane; i < acted; i += LANES) {
@@ -51,9 +53,15 @@ fn gather_samples(
     }
     if (lane > 0u) { return; }
     let scalars = start + seen + 2u * acted;
-    let value = log_prob_and_value[n + origin] * scale[1] + scale[0];
+    var advantage = 0.0;
+    for (var stream = 0u; stream < streams; stream++) {
+        let at = FIELDS * stream;
+        let source = origin * streams + stream;
+        let value = log_prob_and_value[n + source] * scale[at + 1u] + scale[at];
+        advantage += scale[at + 7u] * (advantage_and_return[source] - scale[at + 4u]) / (scale[at + 5u] + MIN_STD);
+        rows[scalars + 2u + stream] = (advantage_and_return[n * streams + source] - scale[at + 2u]) / scale[at + 3u];
+        rows[scalars + 2u + streams + stream] = (value - scale[at + 2u]) / scale[at + 3u];
+    }
     rows[scalars] = log_prob_and_value[origin];
-    rows[scalars + 1u] = (advantage_and_return[origin] - scale[4]) / (scale[5] + MIN_STD);
-    rows[scalars + 2u] = (advantage_and_return[n + origin] - scale[2]) / scale[3];
-    rows[scalars + 3u] = (value - scale[2]) / scale[3];
+    rows[scalars + 1u] = advantage;
 }

@@ -2,12 +2,12 @@
 // outputs of actor and critic and to log_std, and what is logged of it. One invocation a row.
 //
 // dims         [4]                  numbers of an observation; where log_std begins; numbers of an action;
-//                                    1
+//                                    values
 // samples      [..][width]          observation, action, old mean, old log probability, advantage,
-//                                    target, old value
+//                                    targets, old values
 // parameters   [parameters]
 // old_log_std  [action]
-// outputs      [rows][action] mean, then [rows] value
+// outputs      [rows][action] mean, then [rows][values]
 // output_grads  of the same form
 // extras       [rows][action + SUMS]   gradient of log_std; surrogate, value loss, entropy, KL divergence,
 //                                    1 where the ratio is out of the clip range
@@ -23,6 +23,8 @@ struct Params {
     value_coefficient: f32,
     entropy_coefficient: f32,
     kl_coefficient: f32,
+    // 1 where standard deviations are learned, 0 where they stay.
+    std_coefficient: f32,
     // 1 / rows of the mean.
     inv_count: f32,
 }
@@ -80,21 +82,27 @@ fn ppo_loss(@builtin(global_invocation_id) id: vec3u) {
         output_grads[mean + i] = d_mean * inv_std * params.inv_count;
         let d_std = d_log_prob * (noise * noise - 1.0);
         let kl_std = params.kl_coefficient * (1.0 - var_ratio - mean_diff * mean_diff);
-        extras[extra + i] = (d_std + kl_std - params.entropy_coefficient) * params.inv_count;
+        extras[extra + i] =
+            params.std_coefficient * (d_std + kl_std - params.entropy_coefficient) * params.inv_count;
     }
 
-    let at = params.rows * actions + row;
-    let error = outputs[at] - samples[scalar + 2u];
-    let change = outputs[at] - samples[scalar + 3u];
-    let limit = params.value_clip;
-    let near = error - change + clamp(change, -limit, limit);
-    // Where the limited change counts, nothing depends on the value.
-    let limited = limit > 0.0 && abs(change) > limit && near * near > error * error;
-    output_grads[at] = select(error * params.value_coefficient * params.inv_count, 0.0, limited);
+    let values = dims[3];
+    var value_loss = 0.0;
+    for (var i = 0u; i < values; i++) {
+        let at = params.rows * actions + row * values + i;
+        let error = outputs[at] - samples[scalar + 2u + i];
+        let change = outputs[at] - samples[scalar + 2u + values + i];
+        let limit = params.value_clip;
+        let near = error - change + clamp(change, -limit, limit);
+        // Where the limited change counts, nothing depends on the value.
+        let limited = limit > 0.0 && abs(change) > limit && near * near > error * error;
+        output_grads[at] = select(error * params.value_coefficient * params.inv_count, 0.0, limited);
+        value_loss += 0.5 * select(error * error, near * near, limited);
+    }
 
     let sums = extra + actions;
     extras[sums] = -min(ratio * advantage, clipped * advantage);
-    extras[sums + 1u] = 0.5 * select(error * error, near * near, limited);
+    extras[sums + 1u] = value_loss;
     extras[sums + 2u] = entropy;
     extras[sums + 3u] = kl;
     extras[sums + 4u] = select(1.0, 0.0, ratio == clipped);

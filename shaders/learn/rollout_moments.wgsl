@@ -1,17 +1,19 @@
 // What normalises the samples of a rollout: means and standard deviations of advantages and returns,
-// with the running moments of the returns. One workgroup.
+// with the running moments of the returns; of one stream of rewards. One workgroup.
 //
-// log_prob_and_value    [2][samples]   the second half is the critic's output, normalised
-// advantage_and_return  [2][samples]   in units of reward
-// moments               [2]            running mean and mean square of the returns
-// scale                 [7]            mean and standard deviation of the critic's outputs (read),
+// log_prob_and_value    [samples], then [samples][streams]: the critic's output, normalised
+// advantage_and_return  [2][samples][streams]   in units of reward
+// moments               [streams][2]   running mean and mean square of the returns
+// scale                 [streams][8]   mean and standard deviation of the critic's outputs (read),
 //                                      those that come after them, mean and standard deviation of the
-//                                      advantages, explained variance
+//                                      advantages, explained variance; the weight of the stream stays
 
 struct Params {
     samples: u32,
     // Weight of this rollout in the running moments.
     weight: f32,
+    streams: u32,
+    stream: u32,
 }
 
 @group(0) @binding(0) var<storage, read> log_prob_and_value: array<f32>;
@@ -20,6 +22,7 @@ struct Params {
 @group(0) @binding(3) var<storage, read_write> scale: array<f32>;
 @group(0) @binding(4) var<uniform> params: Params;
 
+const FIELDS = 8u;
 const LANES = 256u;
 const MIN_STD = 1e-3;
 
@@ -28,9 +31,11 @@ var<workgroup> partial: array<vec4f, 256>;
 // Advantage, return, the return's square, the critic's error.
 fn numbers(i: u32) -> vec4f {
     let n = params.samples;
-    let target_value = advantage_and_return[n + i];
-    let value = log_prob_and_value[n + i] * scale[1] + scale[0];
-    return vec4f(advantage_and_return[i], target_value, target_value * target_value, target_value - value);
+    let at = i * params.streams + params.stream;
+    let fields = FIELDS * params.stream;
+    let target_value = advantage_and_return[n * params.streams + at];
+    let value = log_prob_and_value[n + at] * scale[fields + 1u] + scale[fields];
+    return vec4f(advantage_and_return[at], target_value, target_value * target_value, target_value - value);
 }
 
 fn mean(lane: u32, own: vec4f) -> vec4f {
@@ -66,12 +71,14 @@ fn rollout_moments(@builtin(local_invocation_index) lane: u32) {
     }
     let variance = mean(lane, sum);
     if (lane > 0u) { return; }
-    let newest = mix(vec2f(moments[0], moments[1]), center.yz, params.weight);
-    moments[0] = newest.x;
-    moments[1] = newest.y;
-    scale[2] = newest.x;
-    scale[3] = sqrt(max(newest.y - newest.x * newest.x, MIN_STD * MIN_STD));
-    scale[4] = center.x;
-    scale[5] = sqrt(variance.x);
-    scale[6] = 1.0 - variance.w / (variance.y + 1e-12);
+    let moment = 2u * params.stream;
+    let fields = FIELDS * params.stream;
+    let newest = mix(vec2f(moments[moment], moments[moment + 1u]), center.yz, params.weight);
+    moments[moment] = newest.x;
+    moments[moment + 1u] = newest.y;
+    scale[fields + 2u] = newest.x;
+    scale[fields + 3u] = sqrt(max(newest.y - newest.x * newest.x, MIN_STD * MIN_STD));
+    scale[fields + 4u] = center.x;
+    scale[fields + 5u] = sqrt(variance.x);
+    scale[fields + 6u] = 1.0 - variance.w / (variance.y + 1e-12);
 }

@@ -24,7 +24,7 @@ struct Params {
     characters: u32,
     width: u32,
     at: u32,
-    only: u32, // environments whose step ended so; all if ANY
+    only: u32, // environments whose step ended as one of these, 1 << termination
 }
 
 @group(0) @binding(0) var<storage, read_write> model_table: array<u32>;
@@ -35,8 +35,6 @@ struct Params {
 @group(0) @binding(5) var<storage, read_write> termination: array<u32>;
 @group(0) @binding(6) var<storage, read_write> observation: array<f32>;
 @group(0) @binding(7) var<uniform> params: Params;
-
-const ANY = 0xffffffffu;
 
 var<private> cursor: u32;
 
@@ -74,7 +72,7 @@ fn proprioception(@builtin(global_invocation_id) id: vec3u) {
     env = id.x / params.characters;
     let character = id.x % params.characters;
     if (env >= params.envs) { return; }
-    if (params.only != ANY && termination[env] != params.only) { return; }
+    if ((params.only >> termination[env] & 1u) == 0u) { return; }
     cursor = params.at + id.x * params.width;
     let keys = characters[0];
     let list = 1u + character * (1u + keys);

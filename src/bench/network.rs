@@ -38,7 +38,7 @@ fn cases() -> Result<Vec<Case>> {
         for (preset, suffix) in [(Preset::Fast, ""), (Preset::Paper, ", paper")] {
             let config = task.config(preset);
             let spec = task.check(&config)?;
-            let networks = ActorCritic::new(&config.ppo.network, &spec.observation, spec.action)?;
+            let networks = ActorCritic::new(&config.ppo.network, &spec.observation, spec.action, 1)?;
             if !seen.contains(&networks) {
                 cases.push(Case {
                     name: format!("{}{suffix}", task.name),
@@ -59,7 +59,7 @@ fn cases() -> Result<Vec<Case>> {
         let observation = ObservationSpec { vector, grid: None };
         cases.push(Case {
             name: name.to_string(),
-            networks: ActorCritic::new(&config, &observation, WIDE_ACTION)?,
+            networks: ActorCritic::new(&config, &observation, WIDE_ACTION, 1)?,
             rows: WIDE_ROWS,
         });
     }
@@ -172,6 +172,7 @@ impl<'a> Pass<'a> {
         let Case { networks, rows, .. } = self.case;
         let objective = PpoLoss {
             action: networks.actor.outputs(),
+            values: networks.critic.outputs(),
             log_std: networks.log_std(),
             old_log_std: &self.old_log_std,
             coefficients: LossCoefficients {
@@ -180,6 +181,7 @@ impl<'a> Pass<'a> {
                 value_coefficient: 1.0,
                 entropy_coefficient: 0.0,
                 kl_coefficient: 0.0,
+                std_coefficient: 1.0,
                 inv_count: 1.0 / *rows as f32,
             },
         };

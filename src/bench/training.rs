@@ -32,7 +32,7 @@ pub fn measure(context: &BenchContext, record: &mut Recorder) -> Result<()> {
             };
             let ppo = ppo(task.name(), envs)?;
             let spec = config.spec();
-            let numbers = ppo.batch() * width(spec.observation.dim(), spec.action);
+            let numbers = ppo.batch() * width(spec.observation.dim(), spec.action, 1);
             let fits = context.on.device.holds("samples", numbers).is_ok();
             if 4.0 * last > MAX_CALL_S || !fits {
                 break;

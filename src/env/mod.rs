@@ -5,6 +5,7 @@
 
 pub mod batch;
 pub mod curriculum;
+pub mod demonstrations;
 pub mod humanoid;
 pub mod live_view;
 pub mod locomotion;
@@ -14,6 +15,7 @@ pub mod vec_env;
 
 pub use crate::kernels::termination;
 pub use batch::EnvBatch;
+pub use demonstrations::Demonstrations;
 pub use spec::{EnvSpec, ObservationSpec};
 pub use stats::Stats;
 pub use vec_env::{Transition, VecEnv};

@@ -13,6 +13,10 @@ pub struct EnvSpec {
     pub agents: usize,
     /// Form of an agent's observation.
     pub observation: ObservationSpec,
+    /// Numbers of an observation, from its first on, that say how an agent moves: what a discriminator
+    /// sees. 0 if it moves in no style.
+    #[serde(default)]
+    pub style: usize,
     /// Numbers of an action.
     pub action: usize,
     /// Length of a step, s.

@@ -15,7 +15,8 @@ pub struct Transition<'a> {
     /// `[steps][rows]`, see [`crate::kernels::termination`].
     pub termination: &'a mut Array<u32>,
     /// `[final_steps][rows][observation]`: the last observation of the episodes that this step ended
-    /// and whose value goes on. The rows of others are left as they are.
+    /// and whose value goes on; a simulated body's, however it ended. The rows of others are left as they
+    /// are.
     pub final_observation: &'a mut Array,
 }
 

@@ -6,18 +6,18 @@ use super::observation::ObservationSpec;
 use crate::kernels::rng::{gaussian, random4};
 use std::ops::Range;
 
-/// Two separate networks of the same hidden layers: the actor's parameters come first, then the critic's,
+/// Two separate networks of the same hidden layers. The actor's parameters come first, then the critic's,
 /// then the logarithms of the standard deviations of the actions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ActorCritic {
     /// Observations to mean actions.
     pub actor: Network,
-    /// Observations to a value.
+    /// Observations to a value of each stream of rewards.
     pub critic: Network,
 }
 
 impl ActorCritic {
-    /// Networks for actions of `action` numbers.
+    /// Networks for actions of `action` numbers and so many `values`.
     ///
     /// # Errors
     /// There can be no such networks, or not for such observations.
@@ -25,9 +25,10 @@ impl ActorCritic {
         config: &NetworkConfig,
         observation: &ObservationSpec,
         action: usize,
+        values: usize,
     ) -> Result<Self, NetworkError> {
         let actor = Network::new(config, observation, action, 0)?;
-        let critic = Network::new(config, observation, 1, actor.span().end)?;
+        let critic = Network::new(config, observation, values, actor.span().end)?;
         Ok(ActorCritic { actor, critic })
     }
 

@@ -3,9 +3,10 @@
 
 use crate::container::{Section, SectionError};
 use crate::gpu::{Array, Buffer, Device};
-use crate::kernels::learn::{adam, grad_norm};
+use crate::kernels::learn::{adam, adapt_lr, grad_norm};
 use anyhow::Result;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Parameters that a core steps in one go.
 const STRIP: usize = 1 << 14;
@@ -19,6 +20,10 @@ pub struct Adam {
     /// Steps taken.
     pub steps: u64,
     device: Device,
+    /// Factors of the learning rate: see [`adapt_lr`].
+    rates: Array,
+    /// Parameters whose learning rate has the second factor.
+    second: Range<usize>,
     norm_partials: Array,
     /// Number of the parameters, for a shader's loops.
     count: Option<Buffer<u32>>,
@@ -31,6 +36,8 @@ impl Adam {
         Adam {
             m: Array::zeroed(device, parameters),
             v: Array::zeroed(device, parameters),
+            rates: Array::from_slice(device, &[1.0, 1.0, 0.0]),
+            second: 0..0,
             steps: 0,
             norm_partials: Array::zeroed(device, grad_norm::NORM_PARTIALS),
             count: match device {
@@ -39,6 +46,13 @@ impl Adam {
             },
             device: device.clone(),
         }
+    }
+
+    /// Lets the parameters of a range have a learning rate of their own, so many times that of the others.
+    pub fn with_second_rate(mut self, second: Range<usize>, factor: f64) -> Self {
+        self.second = second;
+        self.rates = Array::from_slice(&self.device, &[1.0, factor as f32, 0.0]);
+        self
     }
 
     /// Takes a step against `gradient`, which is first shortened to `max_grad_norm` where it is longer
@@ -51,13 +65,15 @@ impl Adam {
         max_grad_norm: f64,
     ) {
         self.steps += 1;
-        let params = adam::Params::new(self.m.len(), self.steps, learning_rate, max_grad_norm);
+        let (len, second) = (self.m.len(), self.second.clone());
+        let params = adam::Params::new(len, self.steps, learning_rate, max_grad_norm, second);
         match (&self.device, &self.count) {
             (Device::Gpu(gpu), Some(count)) => {
                 let (gradient, norm) = (gradient.buffer(), self.norm_partials.buffer());
                 grad_norm::launch(gpu, count, gradient, norm);
                 let (m, v) = (self.m.buffer(), self.v.buffer());
-                adam::launch(gpu, gradient, norm, parameters.buffer(), m, v, &params);
+                let (parameters, rates) = (parameters.buffer(), self.rates.buffer());
+                adam::launch(gpu, gradient, norm, parameters, m, v, rates, &params);
             }
             _ => {
                 let (gradient, norm) = (gradient.host(), self.norm_partials.host_mut());
@@ -66,13 +82,33 @@ impl Adam {
                 let strips = parameters.zip(gradient.par_chunks(STRIP));
                 let moments = self.m.host_mut().par_chunks_mut(STRIP);
                 let moments = moments.zip(self.v.host_mut().par_chunks_mut(STRIP));
-                strips
-                    .zip(moments)
-                    .for_each(|((parameters, gradient), (m, v))| {
-                        adam::twin(gradient, norm, parameters, m, v, &params);
-                    });
+                let rates = self.rates.host();
+                strips.zip(moments).enumerate().for_each(
+                    |(strip, ((parameters, gradient), (m, v)))| {
+                        let params = params.of_strip(strip * STRIP, gradient.len());
+                        adam::twin(gradient, norm, parameters, m, v, rates, &params);
+                    },
+                );
             }
         }
+    }
+
+    /// Adapts the first learning rate to the KL divergence that an objective's `sums` show.
+    pub fn adapt(&mut self, sums: &mut Array, params: &adapt_lr::Params) {
+        match &self.device {
+            Device::Cpu => adapt_lr::twin(sums.host_mut(), self.rates.host_mut(), params),
+            Device::Gpu(gpu) => {
+                adapt_lr::launch(gpu, sums.buffer(), self.rates.buffer(), params);
+            }
+        }
+    }
+
+    /// The factor of the first learning rate.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn rate(&self) -> Result<f32> {
+        Ok(self.rates.read(&self.device)?[0])
     }
 
     /// The norm of the last step's gradient, before it was shortened.
@@ -90,6 +126,7 @@ impl Adam {
     /// The device was lost.
     pub fn save(&self, to: &mut Section) -> Result<()> {
         to.put("adam.steps", self.steps);
+        to.put_array("adam.rates", &self.rates.read(&self.device)?);
         to.put_array("adam.m", &self.m.read(&self.device)?);
         to.put_array("adam.v", &self.v.read(&self.device)?);
         Ok(())
@@ -101,6 +138,8 @@ impl Adam {
     /// It is of another number of parameters, or not finite.
     pub fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
         self.steps = from.get("adam.steps")?;
+        let rates = from.take_finite("adam.rates", adapt_lr::RATES)?;
+        self.rates = Array::from_slice(&self.device, &rates);
         for (name, moments) in [("adam.m", &mut self.m), ("adam.v", &mut self.v)] {
             let values = from.take_finite(name, moments.len())?;
             *moments = Array::from_slice(&self.device, &values);

@@ -9,6 +9,7 @@
 mod layers;
 mod matmul;
 mod microkernel;
+mod penalty;
 mod tanh;
 
 use super::extent::{EngineSize, Rows, Samples};

@@ -6,10 +6,9 @@ use super::extent::{EngineSize, Rows, Samples};
 use super::gpu::{fused::Fused, layerwise::Layerwise};
 use super::network::Network;
 use super::objective::Objective;
-#[cfg(feature = "gpu")]
-use crate::gpu::Gpu;
 use crate::gpu::{Array, Device};
 use anyhow::Result;
+use std::ops::Range;
 
 /// One or more networks over the same observations, whose parameters are one flat vector.
 ///
@@ -67,15 +66,22 @@ impl Engine {
         })
     }
 
-    /// An engine that takes tensors, however narrow the layers are.
+    /// An engine that goes layer by layer, by tensors on a GPU, however narrow the layers are.
     ///
     /// # Errors
     /// The device has no room for that.
-    #[cfg(feature = "gpu")]
-    pub fn layerwise(gpu: &Gpu, networks: Vec<Network>, size: EngineSize) -> Result<Self> {
+    pub fn layerwise(device: &Device, networks: Vec<Network>, size: EngineSize) -> Result<Self> {
         Ok(Engine {
             observation: networks[0].observation().dim(),
-            backend: Backend::Layerwise(Box::new(Layerwise::new(gpu, networks, size)?)),
+            backend: match device {
+                Device::Cpu => Backend::Cpu(Box::new(CpuEngine::new(networks, size))),
+                #[cfg(feature = "gpu")]
+                Device::Gpu(gpu) => {
+                    Backend::Layerwise(Box::new(Layerwise::new(gpu, networks, size)?))
+                }
+                #[cfg(not(feature = "gpu"))]
+                Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
+            },
         })
     }
 
@@ -103,6 +109,45 @@ impl Engine {
             Backend::Fused(engine) => engine.forward(network, parameters, samples, out, out_at),
             #[cfg(feature = "gpu")]
             Backend::Layerwise(engine) => engine.forward(network, parameters, samples, out, out_at),
+        }
+    }
+
+    /// Adds the gradient of a penalty to `gradient`: `weight` times the mean, over rows, of the squared norm
+    /// of the gradient of a network's mean output with respect to its observation (Mescheder, Geiger and
+    /// Nowozin 2018). Adds the sum of these squared norms to the first of `sums`. The network's hidden layers
+    /// are dense ReLUs, whose second derivative is zero; the gradient is therefore exact. The rows are a
+    /// range of `samples`, `[..][width]`, which begin with observations.
+    ///
+    /// # Panics
+    /// On a GPU, of an engine that was not made by [`Engine::layerwise`].
+    pub fn add_gradient_penalty(
+        &self,
+        network: usize,
+        parameters: &Array,
+        samples: &Array,
+        width: usize,
+        rows: Range<usize>,
+        weight: f32,
+        gradient: &mut Array,
+        sums: &mut Array,
+    ) {
+        let samples = Samples {
+            values: samples,
+            width,
+            first: rows.start,
+            count: rows.len(),
+        };
+        match &self.backend {
+            Backend::Cpu(engine) => {
+                let (gradient, sums) = (gradient.host_mut(), sums.host_mut());
+                engine.add_gradient_penalty(network, parameters, samples, weight, gradient, sums);
+            }
+            #[cfg(feature = "gpu")]
+            Backend::Fused(_) => unreachable!("networks with a penalty take tensors"),
+            #[cfg(feature = "gpu")]
+            Backend::Layerwise(engine) => {
+                engine.add_gradient_penalty(network, parameters, samples, weight, gradient, sums);
+            }
         }
     }
 

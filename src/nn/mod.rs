@@ -17,6 +17,7 @@ pub mod network;
 pub mod objective;
 pub mod observation;
 pub mod policy;
+pub mod rows;
 pub mod running_mean_std;
 
 pub use actor_critic::ActorCritic;

@@ -29,8 +29,9 @@ impl Policy {
         config: &NetworkConfig,
         observation: &ObservationSpec,
         action: usize,
+        values: usize,
     ) -> Result<Self, NetworkError> {
-        let networks = ActorCritic::new(config, observation, action)?;
+        let networks = ActorCritic::new(config, observation, action, values)?;
         Ok(Policy {
             config: config.clone(),
             parameters: vec![0.0; networks.parameters()],
@@ -88,6 +89,7 @@ impl Policy {
         to.put("network", &self.config);
         to.put("observation", self.observation());
         to.put("action", self.action());
+        to.put("values", self.networks.critic.outputs());
         to.put("normalized", self.normalizer.is_some());
         to.put_array("parameters", &self.parameters);
         self.normalizer
@@ -105,11 +107,14 @@ impl Policy {
         let possible = |dim: usize| (1..=MAX_DIM).contains(&dim);
         let grid = observation.grid.unwrap_or([1; 3]);
         let action: usize = from.get("action")?;
-        if !possible(action) || observation.vector > MAX_DIM || !grid.into_iter().all(possible) {
-            let message = format!("its observation {observation:?} or action {action} cannot be");
+        let values: usize = from.get("values")?;
+        if !possible(action) || !possible(values) || observation.vector > MAX_DIM || !grid.into_iter().all(possible) {
+            let message = format!(
+                "its observation {observation:?}, action {action} or values {values} cannot be"
+            );
             return Err(SectionError(message));
         }
-        let policy = Policy::new(&config, &observation, action);
+        let policy = Policy::new(&config, &observation, action, values);
         let mut policy = policy.map_err(|error| SectionError(format!("its network: {error}")))?;
         policy.parameters = from.take_finite("parameters", policy.parameters.len())?;
         if from.get("normalized")? {

@@ -166,6 +166,17 @@ impl MotionLibrary {
         &self.motions
     }
 
+    /// The model that all motions are of.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    /// The chance of a motion to be drawn.
+    pub fn share(&self, motion: usize) -> f32 {
+        let before = motion.checked_sub(1).map_or(0.0, |last| self.shares[last]);
+        self.shares[motion] - before
+    }
+
     /// A motion by weight, and a time within it, s, all of which are as likely: of two random numbers, at least 0
     /// and less than 1.
     pub fn sample(&self, [share, time]: [f32; 2]) -> (usize, f32) {

@@ -3,6 +3,7 @@
 //! Environments return data; everything that is learning mathematics is here: sampling of actions,
 //! generalised advantage estimation, normalisation, the objectives.
 
+pub mod amp;
 pub mod gae;
 pub mod ppo;
 pub mod rollout;

@@ -16,23 +16,26 @@ pub struct Rollout {
     pub action: Array,
     /// `[steps][rows][action]`, the policy's mean when it acted.
     pub mean: Array,
-    /// `[2][steps][rows]`: logarithm of the action's density, then the critic's normalised output.
+    /// Logarithm of the action's density, `[steps][rows]`, then the critic's normalised outputs,
+    /// `[steps][rows][streams]`.
     pub log_prob_and_value: Array,
-    /// `[steps][rows]`
+    /// `[steps][rows]`, of the task.
     pub reward: Array,
+    /// `[steps][rows]`, of the style, where there is one.
+    pub style_reward: Array,
     /// `[steps][rows]`, see [`crate::env::termination`].
     pub termination: Array<u32>,
     /// `[final_steps][rows][observation]`
     pub final_observation: Array,
     /// `[rows][observation]`, after the last step.
     pub next_observation: Array,
-    /// `[2][steps][rows]`: advantage and return, in units of reward.
+    /// `[2][steps][rows][streams]`: advantages and returns, in units of reward.
     pub advantage_and_return: Array,
 }
 
 impl Rollout {
-    /// Columns for `steps` steps of environments on `device`.
-    pub fn new(device: &Device, spec: &EnvSpec, steps: usize) -> Self {
+    /// Columns for `steps` steps of environments on `device`, whose rewards are so many streams.
+    pub fn new(device: &Device, spec: &EnvSpec, steps: usize, streams: usize) -> Self {
         let (rows, observation) = (spec.rows(), spec.observation.dim());
         let samples = steps * rows;
         let zeros = |len: usize| Array::zeroed(device, len);
@@ -42,12 +45,13 @@ impl Rollout {
             observation: zeros(samples * observation),
             action: zeros(samples * spec.action),
             mean: zeros(samples * spec.action),
-            log_prob_and_value: zeros(2 * samples),
+            log_prob_and_value: zeros((1 + streams) * samples),
             reward: zeros(samples),
+            style_reward: zeros(samples),
             termination: Array::zeroed(device, samples),
             final_observation: zeros(spec.final_steps(steps) * rows * observation),
             next_observation: zeros(rows * observation),
-            advantage_and_return: zeros(2 * samples),
+            advantage_and_return: zeros(2 * streams * samples),
         }
     }
 

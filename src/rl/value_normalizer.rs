@@ -10,30 +10,35 @@ use anyhow::Result;
 /// Weight of the newest rollout in the running moments.
 const NEWEST: f32 = 0.1;
 
-/// Running mean and mean square of the returns, in units of reward.
+/// Running mean and mean square of the returns of each stream of rewards, in units of reward.
 pub struct ValueNormalizer {
     device: Device,
-    /// `[mean, mean square]`
+    streams: usize,
+    /// `[streams][mean, mean square]`
     moments: Array,
-    /// See [`scale`]: what normalises the samples of the present rollout.
+    /// `[streams][FIELDS]`, see [`scale`]: what normalises the samples of the present rollout.
     scale: Array,
     updates: u64,
 }
 
 impl ValueNormalizer {
-    /// Mean 0, standard deviation 1.
-    pub fn new(device: &Device) -> Self {
-        let mut values = [0.0; scale::FIELDS];
-        values[scale::OLD_STD] = 1.0;
+    /// Mean 0, standard deviation 1 of each stream, whose advantages have these `weights`.
+    pub fn new(device: &Device, weights: &[f32]) -> Self {
+        let mut values = vec![0.0; weights.len() * scale::FIELDS];
+        for (values, &weight) in values.chunks_exact_mut(scale::FIELDS).zip(weights) {
+            values[scale::OLD_STD] = 1.0;
+            values[scale::WEIGHT] = weight;
+        }
         ValueNormalizer {
             device: device.clone(),
-            moments: Array::from_slice(device, &[0.0, 1.0]),
+            streams: weights.len(),
+            moments: Array::from_slice(device, &[0.0, 1.0].repeat(weights.len())),
             scale: Array::from_slice(device, &values),
             updates: 0,
         }
     }
 
-    /// `[scale::FIELDS]`
+    /// `[streams][FIELDS]`
     pub fn scale(&self) -> &Array {
         &self.scale
     }
@@ -42,39 +47,48 @@ impl ValueNormalizer {
     /// right. Afterwards the scale holds what normalises their samples.
     pub fn update(&mut self, rollouts: &[Rollout]) {
         self.updates += 1;
-        let params = Params {
+        let params = |stream: usize| Params {
             samples: rollouts.iter().map(|part| part.samples() as u32).sum(),
             weight: NEWEST.max(1.0 / self.updates as f32),
+            streams: self.streams as u32,
+            stream: stream as u32,
         };
         match &self.device {
-            Device::Cpu => twin(
-                &joined(rollouts, |part| &part.log_prob_and_value),
-                &joined(rollouts, |part| &part.advantage_and_return),
-                self.moments.host_mut(),
-                self.scale.host_mut(),
-                &params,
-            ),
-            Device::Gpu(gpu) => launch(
-                gpu,
-                rollouts[0].log_prob_and_value.buffer(),
-                rollouts[0].advantage_and_return.buffer(),
-                self.moments.buffer(),
-                self.scale.buffer(),
-                &params,
-            ),
+            Device::Cpu => {
+                let values = joined(rollouts, |part| &part.log_prob_and_value, 1);
+                let returns = joined(rollouts, |part| &part.advantage_and_return, self.streams);
+                for stream in 0..self.streams {
+                    let params = params(stream);
+                    let (moments, scale) = (self.moments.host_mut(), self.scale.host_mut());
+                    twin(&values, &returns, moments, scale, &params);
+                }
+            }
+            Device::Gpu(gpu) => {
+                for stream in 0..self.streams {
+                    launch(
+                        gpu,
+                        rollouts[0].log_prob_and_value.buffer(),
+                        rollouts[0].advantage_and_return.buffer(),
+                        self.moments.buffer(),
+                        self.scale.buffer(),
+                        &params(stream),
+                    );
+                }
+            }
         }
     }
 
-    /// Lets values from now on be in the newest scale.
+    /// Lets values from now on be in the newest scale. Returns the scale before, `[streams][FIELDS]`.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn advance(&mut self) -> Result<[f32; scale::FIELDS]> {
-        let mut values: [f32; scale::FIELDS] = [0.0; scale::FIELDS];
-        values.copy_from_slice(&self.scale.read(&self.device)?);
-        let old = values;
-        values[scale::OLD_MEAN] = values[scale::NEW_MEAN];
-        values[scale::OLD_STD] = values[scale::NEW_STD];
+    pub fn advance(&mut self) -> Result<Vec<f32>> {
+        let mut values = self.scale.read(&self.device)?;
+        let old = values.clone();
+        for values in values.chunks_exact_mut(scale::FIELDS) {
+            values[scale::OLD_MEAN] = values[scale::NEW_MEAN];
+            values[scale::OLD_STD] = values[scale::NEW_STD];
+        }
         self.scale = Array::from_slice(&self.device, &values);
         Ok(old)
     }
@@ -96,22 +110,19 @@ impl ValueNormalizer {
     /// They are missing or damaged.
     pub fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
         self.updates = from.get("value_updates")?;
-        let moments = from.take_finite("value_moments", 2)?;
-        let values = from.take_finite("value_scale", scale::FIELDS)?;
+        let moments = from.take_finite("value_moments", self.moments.len())?;
+        let values = from.take_finite("value_scale", self.scale.len())?;
         self.moments = Array::from_slice(&self.device, &moments);
         self.scale = Array::from_slice(&self.device, &values);
         Ok(())
     }
 }
 
-/// `[2][samples]` of all parts, from those of each.
-fn joined(rollouts: &[Rollout], of: fn(&Rollout) -> &Array) -> Vec<f32> {
-    let half = |number: usize| {
-        let halves = rollouts.iter().map(move |part| {
-            let samples = part.samples();
-            &of(part).host()[number * samples..][..samples]
-        });
-        halves.flatten().copied()
-    };
-    half(0).chain(half(1)).collect()
+/// Two columns, of which the first has `width` numbers a sample, of all parts, from those of each.
+fn joined(rollouts: &[Rollout], of: fn(&Rollout) -> &Array, width: usize) -> Vec<f32> {
+    let halves = rollouts
+        .iter()
+        .map(|part| of(part).host().split_at(width * part.samples()));
+    let (first, second): (Vec<&[f32]>, Vec<&[f32]>) = halves.unzip();
+    [first.concat(), second.concat()].concat()
 }

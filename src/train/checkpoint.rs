@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 const FORMAT: Format = Format {
     kind: "checkpt",
-    version: 4,
+    version: 5,
 };
 
 /// The run that a checkpoint is of, and how far it had come.
@@ -54,7 +54,7 @@ pub enum CheckpointError {
     Store(#[from] StoreError),
     /// A file of a format that this version no longer reads.
     #[error(
-        "{path} was written by footwork 0.1 from before checkpoints had sections (format {format}). This is footwork {VERSION}, which does not read it: use the one that wrote it, or train anew"
+        "{path} was written by an earlier footwork 0.1 (format {format}). This is footwork {VERSION}, which does not read it: use the one that wrote it, or train anew"
     )]
     Older {
         /// The checkpoint.

@@ -5,6 +5,7 @@
 
 use crate::gpu::Choice;
 use crate::nn::network::NetworkError;
+use crate::rl::amp::Amp;
 use crate::rl::ppo::Ppo;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -55,6 +56,9 @@ pub struct Config {
     pub task: TaskConfig,
     /// The choices of learning.
     pub ppo: Ppo,
+    /// Those of a discriminator, for tasks that have one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub amp: Option<Amp>,
 }
 
 /// The choices of a task's preset.
@@ -63,6 +67,8 @@ pub struct TaskPreset {
     pub settings: toml::Table,
     /// The choices of learning.
     pub ppo: Ppo,
+    /// Those of a discriminator, if the task has one.
+    pub amp: Option<Amp>,
     /// Environment steps of a training.
     pub steps: u64,
 }
@@ -173,6 +179,7 @@ impl Config {
                 settings: chosen.settings,
             },
             ppo: chosen.ppo,
+            amp: chosen.amp,
         }
     }
 
@@ -304,7 +311,7 @@ impl Config {
     /// run's `config.toml`.
     pub fn difference(&self, other: &str) -> Option<String> {
         let decisive = |mut all: toml::Table| {
-            all.retain(|key, _| matches!(key, "seed" | "task" | "ppo"));
+            all.retain(|key, _| matches!(key, "seed" | "task" | "ppo" | "amp"));
             all
         };
         let other = toml::from_str(other).unwrap_or_default();
@@ -339,7 +346,8 @@ impl Config {
         if let Some(success) = self.stop_at_success {
             within("stop_at_success", success, 0.01, 1.0)?;
         }
-        check_ppo(&self.ppo)
+        check_ppo(&self.ppo)?;
+        self.amp.as_ref().map_or(Ok(()), check_amp)
     }
 }
 
@@ -410,6 +418,7 @@ fn check_ppo(ppo: &Ppo) -> Result<(), ConfigError> {
     within("ppo.minibatch_size", ppo.minibatch_size, 1, 1 << 23)?;
     within("ppo.learning_rate", ppo.learning_rate, 1e-9, 1.0)?;
     within("ppo.final_lr_fraction", ppo.final_lr_fraction, 0.0, 1.0)?;
+    within("ppo.critic_learning_rate", ppo.critic_learning_rate, 0.0, 1.0)?;
     within("ppo.desired_kl", ppo.desired_kl, 0.0, 100.0)?;
     within("ppo.gamma", ppo.gamma, 0.0, 1.0)?;
     within("ppo.lambda", ppo.lambda, 0.0, 1.0)?;
@@ -421,6 +430,20 @@ fn check_ppo(ppo: &Ppo) -> Result<(), ConfigError> {
     within("ppo.kl_penalty_target", ppo.kl_penalty_target, 1e-6, 100.0)?;
     within("ppo.max_grad_norm", ppo.max_grad_norm, 0.0, 1e6)?;
     within("ppo.init_log_std", ppo.init_log_std, -10.0, 2.0)
+}
+
+fn check_amp(amp: &Amp) -> Result<(), ConfigError> {
+    within("amp.heads", amp.heads, 1, 1024)?;
+    within("amp.steps", amp.steps, 1, 1000)?;
+    within("amp.minibatch_size", amp.minibatch_size, 2, 1 << 20)?;
+    within("amp.learning_rate", amp.learning_rate, 1e-9, 1.0)?;
+    within("amp.max_grad_norm", amp.max_grad_norm, 0.0, 1e6)?;
+    within("amp.gradient_penalty", amp.gradient_penalty, 0.0, 1e6)?;
+    within("amp.logit_decay", amp.logit_decay, 0.0, 1e3)?;
+    within("amp.replay_capacity", amp.replay_capacity, 1, 1 << 22)?;
+    within("amp.replay_per_update", amp.replay_per_update, 1, 1 << 22)?;
+    within("amp.style_weight", amp.style_weight, 1e-6, 1e3)?;
+    within("amp.task_weight", amp.task_weight, 0.0, 1e3)
 }
 
 /// Writes `changes` over `table`, refusing keys that `table` does not know and values of another

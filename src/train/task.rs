@@ -16,6 +16,8 @@ use crate::gpu::Device;
 use crate::nn::{ActorCritic, Policy};
 use crate::physics::model::Model;
 use crate::physics::motion_clip::MotionClip;
+use crate::rl::Algorithm;
+use crate::rl::ppo::PpoLearner;
 use anyhow::Result;
 use std::path::Path;
 use std::sync::Arc;
@@ -58,7 +60,7 @@ impl TaskEntry {
     pub fn check(&self, config: &Config) -> Result<EnvSpec, ConfigError> {
         config.check()?;
         let spec = (self.spec)(config)?;
-        ActorCritic::new(&config.ppo.network, &spec.observation, spec.action)?;
+        ActorCritic::new(&config.ppo.network, &spec.observation, spec.action, 1)?;
         Ok(spec)
     }
 }
@@ -93,6 +95,20 @@ pub trait Task: Send + Sync {
     /// # Errors
     /// The device cannot hold them.
     fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch>;
+
+    /// What learns in them.
+    ///
+    /// # Errors
+    /// The networks do not fit the observations, or the device.
+    fn learner(
+        &self,
+        config: &Config,
+        envs: &EnvBatch,
+        device: &Device,
+    ) -> Result<Box<dyn Algorithm>> {
+        let learner = PpoLearner::new(&config.ppo, envs, device, config.seed)?;
+        Ok(Box::new(learner))
+    }
 
     /// Runs `episodes` fixed episodes to their end, the same ones for every policy.
     ///

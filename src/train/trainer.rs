@@ -12,7 +12,6 @@ use super::task::Task;
 use crate::env::EnvBatch;
 use crate::gpu::Device;
 use crate::rl::Algorithm;
-use crate::rl::ppo::PpoLearner;
 use anyhow::{Context, Result};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -91,8 +90,7 @@ impl<'a> Loop<'a> {
             device,
         } = training;
         let mut envs = task.open(device, config.ppo.envs, config.seed)?;
-        let learner = PpoLearner::new(&config.ppo, &envs, device, config.seed)?;
-        let mut learner: Box<dyn Algorithm> = Box::new(learner);
+        let mut learner = task.learner(config, &envs, device)?;
         let (mut steps, mut earlier_s, mut state) = (0, 0.0, TrainerState::default());
         let mut rows = Vec::new();
         if let Some(checkpoint) = from {

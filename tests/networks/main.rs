@@ -54,7 +54,7 @@ struct Outcome {
 
 impl Case {
     fn new(config: &NetworkConfig, observation: ObservationSpec, samples: usize) -> Case {
-        let networks = ActorCritic::new(config, &observation, ACTION).expect("networks that fit");
+        let networks = ActorCritic::new(config, &observation, ACTION, 1).expect("networks that fit");
         // Something is seen through the last layers, too.
         let begun = networks.init(5, -0.5, &[0.1; ACTION]);
         let noise = normal(networks.parameters(), 7).into_iter();
@@ -81,6 +81,7 @@ impl Case {
                 value_coefficient: 0.7,
                 entropy_coefficient: 0.01,
                 kl_coefficient: 0.5,
+                std_coefficient: 1.0,
                 inv_count: 1.0 / samples as f32,
             },
         }
@@ -128,10 +129,7 @@ impl Case {
     /// In tensors, whatever the networks.
     fn layerwise(&self) -> Outcome {
         let device = lavapipe();
-        let Device::Gpu(gpu) = &device else {
-            unreachable!("lavapipe is a GPU")
-        };
-        let engine = Engine::layerwise(gpu, self.networks.networks(), self.size());
+        let engine = Engine::layerwise(&device, self.networks.networks(), self.size());
         self.by(engine.expect("an engine"), &device)
     }
 
@@ -173,6 +171,7 @@ impl Case {
     fn objective<'a>(&self, old_log_std: &'a Array) -> PpoLoss<'a> {
         PpoLoss {
             action: ACTION,
+            values: 1,
             log_std: self.networks.log_std(),
             old_log_std,
             coefficients: self.coefficients,
@@ -419,7 +418,7 @@ fn the_same_bits_on_any_number_of_threads() {
 fn a_row_does_not_depend_on_its_neighbours() {
     let case = Case::new(&dense(&[32, 32], Activation::Tanh), plain(), SAMPLES);
     let config = dense(&[32, 32], Activation::Tanh);
-    let mut policy = Policy::new(&config, &plain(), ACTION).expect("networks that fit");
+    let mut policy = Policy::new(&config, &plain(), ACTION, 1).expect("networks that fit");
     policy.parameters = case.parameters.clone();
     let all = case.observations();
     let one = policy.mean(&all[33 * VECTOR..34 * VECTOR]);

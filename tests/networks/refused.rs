@@ -89,7 +89,7 @@ fn configurations_are_read_from_toml() {
 #[test]
 fn policies_come_back_from_a_section() {
     let config = dense(&[32, 32], Activation::Tanh);
-    let mut policy = Policy::new(&config, &plain(), ACTION).expect("networks that fit");
+    let mut policy = Policy::new(&config, &plain(), ACTION, 1).expect("networks that fit");
     policy.parameters = policy.networks().init(3, -0.5, &[]);
     let mut normalizer = footwork::nn::RunningMeanStd::new(&Device::Cpu, VECTOR);
     let observations = normal(20 * VECTOR, 4);

@@ -22,9 +22,9 @@ pub fn action_scale(model: &Model) -> Vec<f32> {
     [offsets, scales].concat()
 }
 
-/// The action, `[nu]`, whose targets are those of the model's initial positions.
-pub fn rest_action(model: &Model) -> Vec<f32> {
-    let targets = crate::physics::motion_clip::pd_targets(model, &model.qpos0);
+/// The action, `[nu]`, whose targets are those of positions `q`, `[nq]`.
+pub fn rest_action(model: &Model, q: &[f32]) -> Vec<f32> {
+    let targets = crate::physics::motion_clip::pd_targets(model, q);
     let scale = action_scale(model);
     let (offset, scale) = scale.split_at(targets.len());
     let pairs = targets.iter().zip(offset.iter().zip(scale));

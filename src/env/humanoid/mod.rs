@@ -1,8 +1,13 @@
-//! Simulated humanoids: [`batch`] steps their physics, tasks stand on it. [`stand`] is to stay upright.
+//! Simulated humanoids: [`batch`] steps their physics, [`task`] plays a task on it. [`stand`] is to stay
+//! upright, [`imitate`] to move as recordings do.
 //!
-//! [`action`] says what an action means, [`starts`] where episodes begin.
+//! [`action`] says what an action means, [`starts`] where episodes begin, [`recorded`] what recordings are to
+//! a task.
 
 pub mod action;
 pub mod batch;
+pub mod imitate;
+pub mod recorded;
 pub mod stand;
 pub mod starts;
+pub mod task;

@@ -44,6 +44,7 @@ impl EnvConfig {
                 vector: BASE_OBS_DIM,
                 grid: self.task.has_maps().then_some([CELLS, CELLS, MAPS]),
             },
+            style: 0,
             action: TRAJECTORY_DIM,
             dt: STEP_S,
             bootstrap,

@@ -1,9 +1,10 @@
 //! What tasks of the simulated humanoid add to a step of its physics: [`action_targets`] and
-//! [`random_pushes`] before it; behind it [`stand_reward`], and [`draw_starts`] for the episodes that it
-//! ended. [`episode_sums`] collects statistics.
+//! [`random_pushes`] before it; behind it the task's reward, [`end_episode`], and [`draw_starts`] for the
+//! episodes that it ended. [`episode_sums`] collects statistics.
 
 pub mod action_targets;
 pub mod draw_starts;
+pub mod end_episode;
 pub mod episode_sums;
 pub mod random_pushes;
 pub mod stand_reward;

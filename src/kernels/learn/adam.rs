@@ -2,6 +2,7 @@
 
 use crate::gpu::{Argument, Buffer, Gpu, shader};
 use multiversion::multiversion;
+use std::ops::Range;
 
 crate::shader_params! {
     pub struct Params for adam {
@@ -13,6 +14,10 @@ crate::shader_params! {
         pub bias_correction: f32,
         /// Largest norm of the gradient; 0 for no limit.
         pub max_grad_norm: f32,
+        /// The first parameter whose learning rate has the second factor.
+        pub second: u32,
+        /// The first behind them that has the first factor again.
+        pub second_end: u32,
     }
 }
 
@@ -24,13 +29,35 @@ const EPSILON: f32 = 1e-5;
 
 impl Params {
     /// Parameters of the `steps`-th step, whose moments are corrected for having begun at zero.
-    pub fn new(parameters: usize, steps: u64, lr: f64, max_grad_norm: f64) -> Self {
+    /// Those of `second` have the second factor of the learning rate.
+    pub fn new(
+        parameters: usize,
+        steps: u64,
+        lr: f64,
+        max_grad_norm: f64,
+        second: Range<usize>,
+    ) -> Self {
         let steps = steps.min(i32::MAX as u64) as i32;
         Params {
             parameters: parameters as u32,
             lr: (lr / (1.0 - BETA_1.powi(steps))) as f32,
             bias_correction: (1.0 / (1.0 - BETA_2.powi(steps))) as f32,
             max_grad_norm: max_grad_norm as f32,
+            second: second.start as u32,
+            second_end: second.end as u32,
+        }
+    }
+}
+
+impl Params {
+    /// Those of so many parameters from `first` on, as if they were all.
+    pub fn of_strip(self, first: usize, len: usize) -> Self {
+        let within = |at: u32| (at as usize).saturating_sub(first).min(len) as u32;
+        Params {
+            parameters: len as u32,
+            second: within(self.second),
+            second_end: within(self.second_end),
+            ..self
         }
     }
 }
@@ -46,7 +73,7 @@ pub fn groups(parameters: usize) -> [u32; 3] {
 ///
 /// `gradient`, `parameters`, `m` and `v` are `[parameters]`: `m` and `v` are the running means of
 /// the gradient and of its square. `norm_partials` is `[NORM_PARTIALS]`, see
-/// [`grad_norm`](super::grad_norm).
+/// [`grad_norm`](super::grad_norm). `rates` are two factors of the learning rate.
 pub fn launch(
     gpu: &Gpu,
     gradient: &Buffer<f32>,
@@ -54,9 +81,10 @@ pub fn launch(
     parameters: &Buffer<f32>,
     m: &Buffer<f32>,
     v: &Buffer<f32>,
+    rates: &Buffer<f32>,
     params: &Params,
 ) {
-    let buffers: [&dyn Argument; 5] = [gradient, norm_partials, parameters, m, v];
+    let buffers: [&dyn Argument; 6] = [gradient, norm_partials, parameters, m, v, rates];
     gpu.launch(
         &shader::ADAM,
         groups(params.parameters as usize),
@@ -66,15 +94,44 @@ pub fn launch(
 }
 
 /// The shader's computation on the host.
-#[multiversion(targets("x86_64+avx512f+avx512vl+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 pub fn twin(
     gradient: &[f32],
     norm_partials: &[f32],
     parameters: &mut [f32],
     m: &mut [f32],
     v: &mut [f32],
+    rates: &[f32],
     params: &Params,
 ) {
+    let end = params.parameters as usize;
+    let [second, second_end] = [params.second, params.second_end].map(|at| (at as usize).min(end));
+    let parts = [(0..second, 0), (second..second_end.max(second), 1)];
+    let rest = (second_end.max(second)..end, 0);
+    for (part, rate) in parts.into_iter().chain([rest]) {
+        step(
+            &gradient[part.clone()],
+            norm_partials,
+            &mut parameters[part.clone()],
+            &mut m[part.clone()],
+            &mut v[part],
+            rates[rate],
+            params,
+        );
+    }
+}
+
+/// A step of parameters whose learning rate has one factor.
+#[multiversion(targets("x86_64+avx512f+avx512vl+fma", "x86_64+avx2+fma", "aarch64+neon"))]
+pub fn step(
+    gradient: &[f32],
+    norm_partials: &[f32],
+    parameters: &mut [f32],
+    m: &mut [f32],
+    v: &mut [f32],
+    factor: f32,
+    params: &Params,
+) {
+    let lr = params.lr * factor;
     let norm = norm_partials.iter().sum::<f32>().sqrt();
     let clip_scale = match params.max_grad_norm > 0.0 {
         true => (params.max_grad_norm / (norm + 1e-6)).min(1.0),
@@ -87,6 +144,6 @@ pub fn twin(
         let gradient = gradient * clip_scale;
         *m = keep_m * *m + take_m * gradient;
         *v = keep_v * *v + take_v * gradient * gradient;
-        *parameter -= params.lr * *m / ((*v * params.bias_correction).sqrt() + EPSILON);
+        *parameter -= lr * *m / ((*v * params.bias_correction).sqrt() + EPSILON);
     }
 }

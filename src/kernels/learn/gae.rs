@@ -1,6 +1,7 @@
 //! Generalised advantage estimation (Schulman et al. 2016, equation 16). Shader:
 //! `shaders/learn/gae.wgsl`.
 
+use super::rollout_moments::scale::FIELDS;
 use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::kernels::termination;
 
@@ -18,15 +19,20 @@ crate::shader_params! {
         pub bootstrap: u32,
         /// Steps of `final_value`: 1 if no row has two bootstrapped terminations in the rollout.
         pub final_steps: u32,
+        /// Streams of rewards, each with a value of its own.
+        pub streams: u32,
+        /// The stream that `reward` is of.
+        pub stream: u32,
     }
 }
 
 /// Queues the shader on `gpu`.
 ///
-/// `reward` and `termination` are `[steps][rows]`, `log_prob_and_value` and `advantage_and_return`
-/// `[2][steps][rows]`, `next_value` is `[rows]` and `final_value` `[final_steps][rows]`. Values are
-/// normalised; `scale` begins with the mean and standard deviation that undo it. Advantages and
-/// returns are in units of reward.
+/// `reward` and `termination` are `[steps][rows]`; `log_prob_and_value` is `[steps][rows]`, then
+/// `[steps][rows][streams]`, `advantage_and_return` `[2][steps][rows][streams]`, `next_value`
+/// `[rows][streams]` and `final_value` `[final_steps][rows][streams]`. Values are normalised; `scale`,
+/// `[streams][FIELDS]`, begins with the mean and standard deviation that undo it. Advantages and returns
+/// are in units of reward.
 pub fn launch(
     gpu: &Gpu,
     reward: &Buffer<f32>,
@@ -69,20 +75,23 @@ pub fn twin(
     let rows = params.rows as usize;
     let samples = rows * params.steps as usize;
     let value = &log_prob_and_value[samples..];
+    let (of, stream) = (params.streams as usize, params.stream as usize);
+    let scale = &scale[FIELDS * stream..];
     let denormalized = |value: f32| value * scale[1] + scale[0];
     for row in 0..rows {
-        let (mut after, mut sum) = (denormalized(next_value[row]), 0.0);
+        let (mut after, mut sum) = (denormalized(next_value[row * of + stream]), 0.0);
         for step in (0..params.steps as usize).rev() {
             let at = step * rows + row;
             if termination[at] != termination::RUNNING {
-                let last = final_value[if params.final_steps == 1 { row } else { at }];
+                let from = if params.final_steps == 1 { row } else { at };
+                let last = final_value[from * of + stream];
                 let goes_on = params.bootstrap >> termination[at] & 1 == 1;
                 (after, sum) = (if goes_on { denormalized(last) } else { 0.0 }, 0.0);
             }
-            let now = denormalized(value[at]);
+            let now = denormalized(value[at * of + stream]);
             sum = reward[at] + params.gamma * after - now + params.gamma * params.lambda * sum;
-            advantage_and_return[at] = sum;
-            advantage_and_return[samples + at] = sum + now;
+            advantage_and_return[at * of + stream] = sum;
+            advantage_and_return[(samples + at) * of + stream] = sum + now;
             after = now;
         }
     }

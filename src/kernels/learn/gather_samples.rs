@@ -12,25 +12,30 @@ crate::shader_params! {
         pub observation: u32,
         /// Numbers of an action.
         pub action: u32,
+        /// Streams of rewards.
+        pub streams: u32,
     }
 }
 
-/// Scalars at the end of a row: log probability, normalised advantage, normalised return, the
-/// critic's old output in the new normalisation.
-pub const SCALARS: usize = 4;
+/// Scalars at the end of a row: log probability, the streams' normalised advantages by their weights,
+/// their normalised returns, the critic's old outputs in the new normalisation.
+pub fn scalars(streams: usize) -> usize {
+    2 + 2 * streams
+}
+
 /// Least standard deviation of the advantages.
 const MIN_STD: f32 = 1e-6;
 
 /// Numbers of a row: observation, action, mean, scalars.
-pub fn width(observation: usize, action: usize) -> usize {
-    observation + 2 * action + SCALARS
+pub fn width(observation: usize, action: usize, streams: usize) -> usize {
+    observation + 2 * action + scalars(streams)
 }
 
 /// Queues the shader on `gpu`.
 ///
 /// `order` is `[samples]`, `observation` `[samples][observation]`, `action` and `mean` are
-/// `[samples][action]`, `log_prob_and_value` and `advantage_and_return` `[2][samples]`; `scale` has
-/// the fields of [`rollout_moments`](super::rollout_moments), and `samples` is `[samples][width]`,
+/// `[samples][action]`, `log_prob_and_value` is `[samples]`, then `[samples][streams]`,
+/// `advantage_and_return` `[2][samples][streams]`; `scale`, `[streams][scale::FIELDS]`, has the fields of [`rollout_moments`](super::rollout_moments), and `samples` is `[samples][width]`,
 /// see [`width`].
 pub fn launch(
     gpu: &Gpu,
@@ -84,9 +89,9 @@ pub fn twin(
     let count = params.samples as usize;
     let (seen, acted) = (params.observation as usize, params.action as usize);
     let (log_prob, value) = log_prob_and_value.split_at(count);
-    let (advantage, target) = advantage_and_return.split_at(count);
-    let [old_mean, old_std, new_mean, new_std] = std::array::from_fn(|i| scale[i]);
-    let rows = samples.chunks_exact_mut(width(seen, acted));
+    let of = params.streams as usize;
+    let (advantage, target) = advantage_and_return.split_at(count * of);
+    let rows = samples.chunks_exact_mut(width(seen, acted, of));
     for (row, &from) in rows.zip(order) {
         let from = from as usize;
         let (row_observation, row) = row.split_at_mut(seen);
@@ -95,12 +100,16 @@ pub fn twin(
         row_observation.copy_from_slice(&observation[from * seen..][..seen]);
         row_action.copy_from_slice(&action[from * acted..][..acted]);
         row_mean.copy_from_slice(&mean[from * acted..][..acted]);
-        let centered = advantage[from] - scale[scale::ADVANTAGE_MEAN];
-        row_scalars.copy_from_slice(&[
-            log_prob[from],
-            centered / (scale[scale::ADVANTAGE_STD] + MIN_STD),
-            (target[from] - new_mean) / new_std,
-            (value[from] * old_std + old_mean - new_mean) / new_std,
-        ]);
+        let (row_policy, row_values) = row_scalars.split_at_mut(2);
+        row_policy.copy_from_slice(&[log_prob[from], 0.0]);
+        for (stream, scale) in scale.chunks_exact(scale::FIELDS).enumerate() {
+            let [old_mean, old_std, new_mean, new_std] = std::array::from_fn(|i| scale[i]);
+            let from = from * of + stream;
+            let centered = advantage[from] - scale[scale::ADVANTAGE_MEAN];
+            row_policy[1] +=
+                scale[scale::WEIGHT] * centered / (scale[scale::ADVANTAGE_STD] + MIN_STD);
+            row_values[stream] = (target[from] - new_mean) / new_std;
+            row_values[of + stream] = (value[from] * old_std + old_mean - new_mean) / new_std;
+        }
     }
 }

@@ -1,10 +1,13 @@
-//! Learning: [`sample_action`] draws actions, [`gae`] computes advantages. The gradient of narrow dense
+//! Learning: [`sample_action`] draws actions, [`gae`] computes advantages. A discriminator sees
+//! [`style_windows`], and gives the [`style_reward`]; [`discriminator_loss`] is its objective. The gradient of narrow dense
 //! networks, in order: [`forward`], an objective such as [`ppo_loss`], [`backward`], [`mod@gradient`],
-//! [`reduce_grads`]; [`network`] defines their memory layout. A step against any gradient: [`grad_norm`],
-//! [`adam`].
+//! [`reduce_grads`]; [`network`] defines their memory layout. A step against any gradient: [`adapt_lr`],
+//! [`grad_norm`], [`adam`].
 
 pub mod adam;
+pub mod adapt_lr;
 pub mod backward;
+pub mod discriminator_loss;
 pub mod forward;
 pub mod gae;
 pub mod gather_samples;
@@ -15,3 +18,5 @@ pub mod ppo_loss;
 pub mod reduce_grads;
 pub mod rollout_moments;
 pub mod sample_action;
+pub mod style_reward;
+pub mod style_windows;

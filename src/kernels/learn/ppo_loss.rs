@@ -2,6 +2,7 @@
 //! KL divergence of the new policy from the old and a bound on the critic's change. Shader:
 //! `shaders/learn/ppo_loss.wgsl`.
 
+use super::gather_samples::scalars;
 use crate::gpu::{Argument, Buffer, Gpu, groups, shader};
 
 crate::shader_params! {
@@ -22,6 +23,8 @@ crate::shader_params! {
         pub entropy_coefficient: f32,
         /// Weight of the penalty on the KL divergence.
         pub kl_coefficient: f32,
+        /// 1 where standard deviations are learned, 0 where they stay.
+        pub std_coefficient: f32,
         /// 1 / rows of the mean.
         pub inv_count: f32,
     }
@@ -30,13 +33,11 @@ crate::shader_params! {
 /// What is added up besides the gradient of `log_std`: surrogate, value loss, entropy, KL divergence,
 /// samples out of the clip range.
 pub const SUMS: usize = shader::ppo_loss::constants::SUMS as usize;
-/// Numbers at the end of a sample: log probability, advantage, target, old value.
-const SCALARS: usize = 4;
 const HALF_LOG_TAU: f32 = 0.918_938_5;
 
 /// Queues the shader on `gpu`.
 ///
-/// `dims`: numbers of an observation, where `log_std` begins, numbers of an action.
+/// `dims`: numbers of an observation, where `log_std` begins, numbers of an action, values.
 pub fn launch(
     gpu: &Gpu,
     dims: &Buffer<u32>,
@@ -62,13 +63,14 @@ pub fn launch(
 }
 
 /// The actor's part for `rows`, whose last numbers are action, old mean, log probability, advantage,
-/// target, old value. Writes the gradients over the `means`, `[rows][action]`, and adds to `extras`, `[action + SUMS]`.
+/// as many targets as there are `values`, old values. Writes the gradients over the `means`, `[rows][action]`, and adds to `extras`, `[action + SUMS]`.
 pub fn actor(
     log_std: &[f32],
     old_log_std: &[f32],
     rows: &[&[f32]],
     means: &mut [f32],
     extras: &mut [f32],
+    values: usize,
     params: &Params,
 ) {
     let actions = log_std.len();
@@ -88,7 +90,7 @@ pub fn actor(
         .sum();
     let (d_log_std, sums) = extras.split_at_mut(actions);
     for (row, mean) in rows.iter().zip(means.chunks_exact_mut(actions)) {
-        let (_, row) = row.split_at(row.len() - 2 * actions - SCALARS);
+        let (_, row) = row.split_at(row.len() - 2 * actions - scalars(values));
         let (action, row) = row.split_at(actions);
         let (old_mean, scalars) = row.split_at(actions);
         let (old_log_prob, advantage) = (scalars[0], scalars[1]);
@@ -111,7 +113,8 @@ pub fn actor(
             mean[i] = d_mean * inv_std[i] * params.inv_count;
             let d_std = d_log_prob * (noise * noise - 1.0);
             let kl_std = params.kl_coefficient * (1.0 - var_ratio[i] - mean_diff * mean_diff);
-            d_log_std[i] += (d_std + kl_std - params.entropy_coefficient) * params.inv_count;
+            let d_std = d_std + kl_std - params.entropy_coefficient;
+            d_log_std[i] += params.std_coefficient * d_std * params.inv_count;
         }
         sums[0] -= (ratio * advantage).min(clipped * advantage);
         sums[2] += entropy;
@@ -120,11 +123,20 @@ pub fn actor(
     }
 }
 
-/// The critic's part: writes the gradients over the `values`, `[rows]`.
-pub fn critic(rows: &[&[f32]], values: &mut [f32], extras: &mut [f32], params: &Params) {
+/// The critic's part: writes the gradients over its `outputs`, `[rows][values]`.
+pub fn critic(
+    rows: &[&[f32]],
+    outputs: &mut [f32],
+    extras: &mut [f32],
+    values: usize,
+    params: &Params,
+) {
     let value_loss = extras.len() - SUMS + 1;
-    for (row, value) in rows.iter().zip(values) {
-        let [target, old_value] = [2, 1].map(|back| row[row.len() - back]);
+    let pairs = rows.iter().flat_map(|row| {
+        let (targets, old_values) = row[row.len() - 2 * values..].split_at(values);
+        targets.iter().zip(old_values)
+    });
+    for ((target, old_value), value) in pairs.zip(outputs) {
         let error = *value - target;
         let change = *value - old_value;
         let limit = params.value_clip;

@@ -8,6 +8,10 @@ crate::shader_params! {
         pub samples: u32,
         /// Weight of this rollout in the running moments of the returns.
         pub weight: f32,
+        /// Streams of rewards.
+        pub streams: u32,
+        /// The stream that is looked at.
+        pub stream: u32,
     }
 }
 
@@ -27,8 +31,10 @@ pub mod scale {
     pub const ADVANTAGE_STD: usize = 5;
     /// 1 - variance of the critic's error / variance of its target.
     pub const EXPLAINED_VARIANCE: usize = 6;
+    /// Weight of the stream's advantages, which does not change.
+    pub const WEIGHT: usize = 7;
     /// Number of fields.
-    pub const FIELDS: usize = 7;
+    pub const FIELDS: usize = 8;
 }
 
 /// Least standard deviation of the returns.
@@ -36,10 +42,11 @@ const MIN_STD: f64 = 1e-3;
 
 /// Queues the shader on `gpu`.
 ///
-/// `log_prob_and_value` and `advantage_and_return` are `[2][samples]`: the values normalised,
-/// advantages and returns in units of reward. `moments` is the running mean and mean square of the
-/// returns. `scale`, `[scale::FIELDS]`, comes with the old mean and standard deviation, and leaves
-/// with all fields.
+/// `log_prob_and_value` is `[samples]`, then `[samples][streams]`, `advantage_and_return`
+/// `[2][samples][streams]`: the values normalised, advantages and returns in units of reward. `moments`,
+/// `[streams][2]`, are the running mean and mean square of the returns. `scale`,
+/// `[streams][scale::FIELDS]`, comes with the old mean and standard deviation, and leaves with all
+/// fields.
 pub fn launch(
     gpu: &Gpu,
     log_prob_and_value: &Buffer<f32>,
@@ -65,16 +72,19 @@ pub fn twin(
     params: &Params,
 ) {
     let samples = params.samples as usize;
-    let value = &log_prob_and_value[samples..][..samples];
-    let (advantage, target) = advantage_and_return.split_at(samples);
+    let (of, stream) = (params.streams as usize, params.stream as usize);
+    let value = &log_prob_and_value[samples..];
+    let (advantage, target) = advantage_and_return.split_at(samples * of);
+    let moments = &mut moments[2 * stream..][..2];
+    let scale = &mut scale[scale::FIELDS * stream..][..scale::FIELDS];
     let mean = |of: &dyn Fn(usize) -> f64| (0..samples).map(of).sum::<f64>() / samples as f64;
     let variance = |of: &dyn Fn(usize) -> f64| {
         let center = mean(of);
         mean(&|i| (of(i) - center).powi(2))
     };
-    let target = |i: usize| f64::from(target[i]);
+    let target = |i: usize| f64::from(target[i * of + stream]);
     let (old_mean, old_std) = (scale[scale::OLD_MEAN], scale[scale::OLD_STD]);
-    let error = |i: usize| target(i) - f64::from(value[i] * old_std + old_mean);
+    let error = |i: usize| target(i) - f64::from(value[i * of + stream] * old_std + old_mean);
     scale[scale::EXPLAINED_VARIANCE] =
         (1.0 - variance(&error) / (variance(&target) + 1e-12)) as f32;
 
@@ -88,7 +98,7 @@ pub fn twin(
     scale[scale::NEW_MEAN] = moments[0];
     scale[scale::NEW_STD] = spread.sqrt() as f32;
 
-    let advantage = |i: usize| f64::from(advantage[i]);
+    let advantage = |i: usize| f64::from(advantage[i * of + stream]);
     scale[scale::ADVANTAGE_MEAN] = mean(&advantage) as f32;
     scale[scale::ADVANTAGE_STD] = variance(&advantage).sqrt() as f32;
 }

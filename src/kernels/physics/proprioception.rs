@@ -3,7 +3,6 @@
 use super::collision::poses_of;
 use super::smooth_dynamics::{DynamicsLayout, spatial};
 use super::strided::gather;
-use crate::gpu::shader::proprioception::constants as at;
 use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::physics::kinematics::quaternion;
 use crate::physics::model::{JointKind, Model};
@@ -21,13 +20,10 @@ crate::shader_params! {
         pub width: u32,
         /// Index of the first observation.
         pub at: u32,
-        /// The environments to observe: those whose step ended so, or [`ANY`].
+        /// The environments to observe: those whose step ended as one of these, `1 << termination`.
         pub only: u32,
     }
 }
-
-/// All environments, however their step ended.
-pub const ANY: u32 = at::ANY;
 
 /// Numbers of the observation of a tree's character with `keys` key bodies.
 pub fn width(model: &Model, tree: usize, keys: usize) -> usize {
@@ -46,7 +42,7 @@ pub fn width(model: &Model, tree: usize, keys: usize) -> usize {
 ///
 /// `poses` and the velocities in `dynamics` must be of `state`. `characters` holds the number of key
 /// bodies, then of each character its tree and its key bodies; `termination` `[envs]`; `observation`
-/// takes `[envs][characters][width]` from `params.at` on.
+/// takes `[envs][characters][width]` from `params.at` on, of which each row's own numbers come first.
 pub fn launch(
     gpu: &Gpu,
     tables: &Buffer<u32>,
@@ -98,7 +94,7 @@ pub fn twin(
             row / params.characters as usize,
             row % params.characters as usize,
         );
-        if params.only != ANY && termination[env] != params.only {
+        if params.only >> termination[env] & 1 == 0 {
             continue;
         }
         gather(state, envs, env, 0, &mut q);

@@ -122,6 +122,36 @@ impl Layerwise {
         }
     }
 
+    /// See [`Engine::add_gradient_penalty`](crate::nn::Engine::add_gradient_penalty).
+    pub fn add_gradient_penalty(
+        &self,
+        network: usize,
+        parameters: &Array,
+        batch: Samples,
+        weight: f32,
+        gradient: &mut Array,
+        sums: &mut Array,
+    ) {
+        let (gpu, network) = (&self.gpu, &self.networks[network]);
+        let flat = self.flat(parameters);
+        let (pass, outputs) = Pass::new(network, &flat, self.observations(network, batch));
+        let (own, square) = pass.penalty(network, &flat, outputs, weight);
+        let span = network.span();
+        let before: Tensor<1> = from_buffer(gpu, gradient.buffer(), [gradient.len()]);
+        let mut parts = vec![before.clone().slice([0..span.start])];
+        parts.push(before.clone().slice([span.clone()]).add(Tensor::cat(own, 0)));
+        parts.push(before.clone().slice([span.end..before.dims()[0]]));
+        let parts = parts.into_iter().filter(|part| part.dims()[0] > 0);
+        *gradient = Array::Gpu(to_buffer(Tensor::cat(parts.collect(), 0)));
+        let before: Tensor<1> = from_buffer(gpu, sums.buffer(), [sums.len()]);
+        let first = before.clone().slice([0..1]).add(square);
+        let sum = match before.dims()[0] {
+            1 => first,
+            len => Tensor::cat(vec![first, before.slice([1..len])], 0),
+        };
+        *sums = Array::Gpu(to_buffer(sum));
+    }
+
     fn flat(&self, parameters: &Array) -> Tensor<1> {
         from_buffer(&self.gpu, parameters.buffer(), [parameters.len()])
     }
@@ -167,6 +197,43 @@ impl Pass {
             values = forward(params, flat, values);
         }
         (Pass { inputs }, values)
+    }
+
+    /// The gradients, in the order of the parameters, of `weight` times the mean squared norm of the mean
+    /// output's gradient with respect to the observation; and the sum of these squared norms.
+    fn penalty(
+        &self,
+        network: &Network,
+        flat: &Tensor<1>,
+        outputs: Tensor<2>,
+        weight: f32,
+    ) -> (Vec<Tensor<1>>, Tensor<1>) {
+        let [rows, heads] = outputs.dims();
+        let mut backward = vec![outputs.zeros_like().add_scalar(1.0 / heads as f32)];
+        for (number, params) in network.layers().iter().enumerate().rev() {
+            let mut next = input_gradient(params, flat, backward[backward.len() - 1].clone());
+            if let Some(below) = number.checked_sub(1) {
+                let kind = network.layers()[below].layer.activation();
+                next = activation_backward(kind, next, self.inputs[number].clone());
+            }
+            backward.push(next);
+        }
+        // Of the observation first, then of the sums of every layer.
+        backward.reverse();
+        let square = column_sums(backward[0].clone().square().sum_dim(1));
+        let mut forward = backward[0].clone().mul_scalar(2.0 * weight / rows as f32);
+        let mut parts = Vec::new();
+        for (number, params) in network.layers().iter().enumerate() {
+            let own = forward.clone().transpose().matmul(backward[number + 1].clone());
+            parts.push(own.flatten(0, 1));
+            parts.push(part(flat, params.biases()).zeros_like());
+            if let Some(activations) = self.inputs.get(number + 1) {
+                forward = forward.matmul(weights(params, flat));
+                let kind = params.layer.activation();
+                forward = activation_backward(kind, forward, activations.clone());
+            }
+        }
+        (parts, square)
     }
 
     /// The gradients of all parameters in their order, given that of the outputs.

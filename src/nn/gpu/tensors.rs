@@ -1,8 +1,9 @@
 //! Operations on tensors that burn has not, or not for devices like lavapipe.
 
 use crate::gpu::tensor::{from_buffer, to_buffer};
-use crate::gpu::{Array, Gpu};
-use burn::tensor::Tensor;
+use crate::gpu::{Array, Buffer, Gpu};
+use burn::tensor::{Int, Tensor};
+use std::ops::Range;
 
 /// Numbers summed by one invocation: lavapipe's stop, silently, after 65,535.
 const ROW: usize = 512;
@@ -36,4 +37,46 @@ pub fn write<const D: usize>(gpu: &Gpu, values: Tensor<D>, out: &mut Array, at: 
     let count = values.shape().num_elements();
     let tensor = tensor.slice_assign([at..at + count], values.reshape([count]));
     *out = Array::Gpu(to_buffer(tensor));
+}
+
+fn all(gpu: &Gpu, values: &Array) -> Tensor<1> {
+    from_buffer(gpu, values.buffer(), [values.len()])
+}
+
+fn rows(gpu: &Gpu, values: &Array, width: usize) -> Tensor<2> {
+    from_buffer(gpu, values.buffer(), [values.len() / width, width])
+}
+
+/// See [`crate::nn::rows::pick`].
+pub fn pick(gpu: &Gpu, from: &Array, width: usize, numbers: &[u32]) -> Array {
+    let numbers: Vec<i32> = numbers.iter().map(|&row| row as i32).collect();
+    let all = rows(gpu, from, width);
+    let numbers = Tensor::<1, Int>::from_data(&numbers[..], &all.device());
+    Array::Gpu(to_buffer(all.select(0, numbers).flatten::<1>(0, 1)))
+}
+
+/// See [`crate::nn::rows::labelled`].
+pub fn labelled(gpu: &Gpu, from: &Array, width: usize, labels: &[f32]) -> Array {
+    let values = rows(gpu, from, width);
+    let labels = Array::Gpu(Buffer::from_slice(gpu, labels));
+    let both = Tensor::cat(vec![values, rows(gpu, &labels, 1)], 1);
+    Array::Gpu(to_buffer(both.flatten::<1>(0, 1)))
+}
+
+/// See [`crate::nn::rows::join`].
+pub fn join(gpu: &Gpu, parts: &[&Array]) -> Array {
+    let parts = parts.iter().map(|part| all(gpu, part)).collect();
+    Array::Gpu(to_buffer(Tensor::<1>::cat(parts, 0)))
+}
+
+/// See [`crate::nn::rows::replace`].
+pub fn replace(gpu: &Gpu, to: &mut Array, at: usize, values: &Array) {
+    write(gpu, all(gpu, values), to, at);
+}
+
+/// See [`crate::nn::rows::decay`].
+pub fn decay(gpu: &Gpu, parameters: &Array, range: Range<usize>, rate: f32, gradient: &mut Array) {
+    let part = |values: &Array| all(gpu, values).slice([range.clone()]);
+    let sum = part(gradient).add(part(parameters).mul_scalar(rate));
+    write(gpu, sum, gradient, range.start);
 }

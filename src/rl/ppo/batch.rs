@@ -2,6 +2,7 @@
 
 use crate::gpu::{Array, Buffer, Device};
 use crate::kernels::learn::gather_samples::{Params, launch, twin, width};
+use crate::kernels::learn::rollout_moments::scale::FIELDS;
 use crate::nn::Rows;
 use crate::rl::rollout::Rollout;
 use rayon::prelude::*;
@@ -12,7 +13,7 @@ use std::ops::Range;
 pub struct Batch<'a> {
     device: &'a Device,
     rollouts: &'a [Rollout],
-    /// See [`crate::kernels::learn::rollout_moments::scale`].
+    /// `[streams][FIELDS]`, see [`crate::kernels::learn::rollout_moments::scale`].
     scale: Array,
     /// `[samples][width]`
     pub rows: Array,
@@ -27,7 +28,8 @@ impl<'a> Batch<'a> {
     pub fn new(device: &'a Device, rollouts: &'a [Rollout], scale: Array) -> Self {
         let spec = &rollouts[0].spec;
         let samples: usize = rollouts.iter().map(Rollout::samples).sum();
-        let width = width(spec.observation.dim(), spec.action);
+        let streams = scale.len() / FIELDS;
+        let width = width(spec.observation.dim(), spec.action, streams);
         let mut batch = Batch {
             device,
             rollouts,
@@ -61,7 +63,7 @@ impl<'a> Batch<'a> {
                 rollout.advantage_and_return.buffer(),
                 self.scale.buffer(),
                 self.rows.buffer(),
-                &params(rollout),
+                &self.params(rollout),
             );
         }
         self.order = order;
@@ -76,7 +78,7 @@ impl<'a> Batch<'a> {
     }
 
     fn gather_on_host(&mut self) {
-        let width = self.width;
+        let (width, streams) = (self.width, self.streams());
         let (mut rest, mut parts) = (self.rows.host_mut(), Vec::new());
         for rollout in self.rollouts {
             let (part, after) = rest.split_at_mut(rollout.samples() * width);
@@ -95,16 +97,25 @@ impl<'a> Batch<'a> {
                 rollout.advantage_and_return.host(),
                 scale,
                 rows,
-                &params(rollout),
+                &params(rollout, streams),
             );
         });
     }
+
+    fn streams(&self) -> usize {
+        self.scale.len() / FIELDS
+    }
+
+    fn params(&self, rollout: &Rollout) -> Params {
+        params(rollout, self.streams())
+    }
 }
 
-fn params(rollout: &Rollout) -> Params {
+fn params(rollout: &Rollout, streams: usize) -> Params {
     Params {
         samples: rollout.samples() as u32,
         observation: rollout.spec.observation.dim() as u32,
         action: rollout.spec.action as u32,
+        streams: streams as u32,
     }
 }

@@ -7,10 +7,10 @@ use crate::container::{Section, SectionError};
 use crate::env::{EnvBatch, EnvSpec, Stats, VecEnv};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::rollout_moments::scale;
-use crate::kernels::learn::sample_action;
+use crate::kernels::learn::{adapt_lr, sample_action};
 use crate::kernels::rng::permutation;
 use crate::nn::{ActorCritic, Adam, Engine, Policy, RunningMeanStd};
-use crate::rl::gae::{Bootstrap, gae};
+use crate::rl::gae::{Bootstrap, RewardSource, gae};
 use crate::rl::rollout::Rollout;
 use crate::rl::sample_action::sample_action;
 use crate::rl::value_normalizer::ValueNormalizer;
@@ -27,6 +27,11 @@ const LR_FACTOR: f64 = 1.5;
 /// Range of an adapted learning rate.
 const LR_RANGE: [f64; 2] = [1e-5, 1e-2];
 
+/// The same, where it is adapted before each minibatch.
+const MINIBATCH_LR_RANGE: [f64; 2] = [2e-5, 3e-3];
+/// Index of the KL divergence in the objective's sums.
+const KL: usize = 3;
+
 /// PPO with separate networks for actor and critic.
 pub struct PpoLearner {
     config: Ppo,
@@ -35,10 +40,15 @@ pub struct PpoLearner {
     networks: ActorCritic,
     engine: Engine,
     parameters: Array,
+    /// Logarithms of the standard deviations while the rollouts are played.
+    log_std: Array,
     adam: Adam,
     value_normalizer: ValueNormalizer,
     observation_normalizer: Option<RunningMeanStd>,
-    rollouts: Vec<Rollout>,
+    /// Where the streams of rewards come from.
+    sources: Vec<RewardSource>,
+    /// Of the present iteration, one for each part of the environments.
+    pub(in crate::rl) rollouts: Vec<Rollout>,
     gradient: Array,
     sums: Array,
     learning_rate: f64,
@@ -52,14 +62,41 @@ pub struct PpoLearner {
 const ACTOR: usize = 0;
 const CRITIC: usize = 1;
 
+/// The optimiser of both networks, with their learning rates.
+fn adam(config: &Ppo, networks: &ActorCritic, device: &Device) -> Adam {
+    let adam = Adam::new(device, networks.parameters());
+    match config.critic_learning_rate {
+        0.0 => adam,
+        rate => adam.with_second_rate(networks.critic.span(), rate / config.learning_rate),
+    }
+}
+
 impl PpoLearner {
-    /// A learner for the environments of a training. Its first actions are near their rest action.
+    /// A learner for the environments of a training and their rewards. Its first actions are near their
+    /// rest action.
     ///
     /// # Errors
     /// The network does not fit the observation, or the device.
     pub fn new(config: &Ppo, envs: &EnvBatch, device: &Device, seed: u32) -> Result<Self> {
+        Self::with_rewards(config, envs, device, seed, &[(RewardSource::Task, 1.0)])
+    }
+
+    /// The same for rewards from several sources, whose advantages are normalised apart and added by their
+    /// weights.
+    ///
+    /// # Errors
+    /// The network does not fit the observation, or the device.
+    pub fn with_rewards(
+        config: &Ppo,
+        envs: &EnvBatch,
+        device: &Device,
+        seed: u32,
+        rewards: &[(RewardSource, f32)],
+    ) -> Result<Self> {
         let spec = &envs.spec();
-        let networks = ActorCritic::new(&config.network, &spec.observation, spec.action)?;
+        let (sources, weights): (Vec<RewardSource>, Vec<f32>) = rewards.iter().copied().unzip();
+        let values = sources.len();
+        let networks = ActorCritic::new(&config.network, &spec.observation, spec.action, values)?;
         let parameters = networks.parameters();
         let samples = config.rollout_length * spec.rows();
         let engine = Engine::new(
@@ -74,9 +111,11 @@ impl PpoLearner {
         let normalizer = || RunningMeanStd::new(device, spec.observation.dim());
         Ok(PpoLearner {
             parameters: Array::from_slice(device, &initial),
-            adam: Adam::new(device, parameters),
-            value_normalizer: ValueNormalizer::new(device),
+            log_std: Array::zeroed(device, spec.action),
+            adam: adam(config, &networks, device),
+            value_normalizer: ValueNormalizer::new(device, &weights),
             observation_normalizer: config.normalize_observations.then(normalizer),
+            sources,
             rollouts: Vec::new(),
             gradient: Array::zeroed(device, parameters),
             sums: Array::zeroed(device, SUMS),
@@ -95,13 +134,15 @@ impl PpoLearner {
     /// Plays a rollout of all environments, the batch's parts one after another or at once. Returns
     /// the seconds spent in the networks and in the environments: fractions of the time that all
     /// took together.
-    fn collect(&mut self, envs: &mut EnvBatch, log_std: &Array) -> Result<[f64; 2]> {
+    pub(in crate::rl) fn collect(&mut self, envs: &mut EnvBatch) -> Result<[f64; 2]> {
         let begin = Instant::now();
+        let range = self.networks.log_std();
+        self.log_std = self.parameters.copy(&self.device, range);
         if self.rollouts.is_empty() {
             let (device, steps) = (&self.device, self.config.rollout_length);
             let specs = envs.parts.iter().map(|part| *part.spec());
             self.rollouts = specs
-                .map(|spec| Rollout::new(device, &spec, steps))
+                .map(|spec| Rollout::new(device, &spec, steps, self.sources.len()))
                 .collect();
         }
         let mut rollouts = std::mem::take(&mut self.rollouts);
@@ -115,13 +156,21 @@ impl PpoLearner {
             .collect();
         let parts = envs.parts.par_iter_mut().zip(&mut rollouts).zip(firsts);
         let seconds: Result<Vec<[f64; 2]>> = parts
-            .map(|((env, rollout), first)| self.play(&mut **env, rollout, log_std, first))
+            .map(|((env, rollout), first)| self.play(&mut **env, rollout, first))
             .collect();
         let [policy_s, env_s] = seconds?
             .into_iter()
             .fold([0.0; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]]);
+        self.rollouts = rollouts;
         let played_s = begin.elapsed().as_secs_f64();
+        let fraction = env_s / (policy_s + env_s).max(1e-9);
+        Ok([1.0 - fraction, fraction].map(|fraction| played_s * fraction))
+    }
 
+    /// Normalises the rollouts' observations, which are raw before, and fills in values, advantages and
+    /// returns.
+    pub(in crate::rl) fn estimate(&mut self) -> Result<()> {
+        let mut rollouts = std::mem::take(&mut self.rollouts);
         let normalizer = self.observation_normalizer.clone();
         if let Some(running) = &mut self.observation_normalizer {
             for rollout in &rollouts {
@@ -131,11 +180,8 @@ impl PpoLearner {
         rollouts
             .par_iter_mut()
             .for_each(|rollout| self.evaluate(rollout, normalizer.as_ref()));
-        self.device.sync()?;
         self.rollouts = rollouts;
-        let fraction = env_s / (policy_s + env_s).max(1e-9);
-        let env_s = played_s * fraction;
-        Ok([begin.elapsed().as_secs_f64() - env_s, env_s])
+        self.device.sync()
     }
 
     /// Plays a rollout of a part, whose first row has the number `first` in the batch.
@@ -143,7 +189,6 @@ impl PpoLearner {
         &self,
         env: &mut dyn VecEnv,
         rollout: &mut Rollout,
-        log_std: &Array,
         first: usize,
     ) -> Result<[f64; 2]> {
         let (rows, action) = (rollout.spec.rows(), self.spec.action);
@@ -190,7 +235,7 @@ impl PpoLearner {
                 seed: self.seed,
                 step_counter: (self.updates * rollout.steps as u64 + step as u64) as u32,
             };
-            sample_action(&self.device, log_std, rollout, &params);
+            sample_action(&self.device, &self.log_std, rollout, &params);
             let acted = clock()?;
             rollout.step(env, step);
             if step == 0 {
@@ -222,10 +267,11 @@ impl PpoLearner {
         };
         let zeros = |len: usize| Array::zeroed(&self.device, len);
         let mut bootstrap = Bootstrap {
-            next_value: zeros(rows),
-            final_value: zeros(final_rows),
+            next_value: zeros(rows * self.sources.len()),
+            final_value: zeros(final_rows * self.sources.len()),
         };
         let values = &mut rollout.log_prob_and_value;
+        // Behind the logarithms of the densities.
         value(&rollout.observation, samples, values, samples);
         value(
             &rollout.next_observation,
@@ -241,11 +287,20 @@ impl PpoLearner {
         );
         let (gamma, lambda) = (self.config.gamma, self.config.lambda);
         let scale = self.value_normalizer.scale();
-        gae(&self.device, rollout, &bootstrap, scale, gamma, lambda);
+        let sources = &self.sources;
+        gae(
+            &self.device,
+            rollout,
+            &bootstrap,
+            scale,
+            sources,
+            gamma,
+            lambda,
+        );
     }
 
     /// Takes gradient steps on the rollouts. The sums of the last epoch stay on the device.
-    fn learn(&mut self, log_std: &Array) {
+    pub(in crate::rl) fn learn(&mut self) {
         self.value_normalizer.update(&self.rollouts);
         let rollouts = std::mem::take(&mut self.rollouts);
         let device = self.device.clone();
@@ -257,7 +312,7 @@ impl PpoLearner {
             self.sums = Array::zeroed(&device, SUMS);
             for start in (0..samples).step_by(self.config.minibatch_size) {
                 let end = samples.min(start + self.config.minibatch_size);
-                self.step(&batch, start..end, log_std);
+                self.step(&batch, start..end);
             }
         }
         self.updates += 1;
@@ -265,11 +320,12 @@ impl PpoLearner {
     }
 
     /// One gradient step on a minibatch.
-    fn step(&mut self, batch: &Batch, samples: Range<usize>, log_std: &Array) {
+    fn step(&mut self, batch: &Batch, samples: Range<usize>) {
         let objective = PpoLoss {
             action: self.spec.action,
+            values: self.sources.len(),
             log_std: self.networks.log_std(),
-            old_log_std: log_std,
+            old_log_std: &self.log_std,
             coefficients: LossCoefficients {
                 inv_count: 1.0 / samples.len() as f32,
                 ..LossCoefficients::new(&self.config, self.kl_coefficient)
@@ -279,11 +335,23 @@ impl PpoLearner {
             &self.parameters,
             &batch.rows,
             batch.width,
-            batch.minibatch(samples),
+            batch.minibatch(samples.clone()),
             &objective,
             &mut self.gradient,
             &mut self.sums,
         );
+        if self.config.adapt_each_minibatch {
+            let rate = |rate: f64| (rate / self.learning_rate) as f32;
+            let params = adapt_lr::Params {
+                kl_at: KL as u32,
+                inv_count: 1.0 / samples.len() as f32,
+                first: u32::from(samples.start == 0),
+                desired_kl: self.config.desired_kl as f32,
+                least: rate(MINIBATCH_LR_RANGE[0]),
+                most: rate(MINIBATCH_LR_RANGE[1]),
+            };
+            self.adam.adapt(&mut self.sums, &params);
+        }
         self.adam.step(
             &mut self.parameters,
             &self.gradient,
@@ -295,7 +363,7 @@ impl PpoLearner {
     /// Adapts learning rate and KL penalty to the KL divergence of the last update.
     fn adapt(&mut self, kl: f64, steps: u64) {
         let config = &self.config;
-        if config.desired_kl > 0.0 {
+        if config.desired_kl > 0.0 && !config.adapt_each_minibatch {
             let lr = self.learning_rate;
             if kl > 2.0 * config.desired_kl {
                 self.learning_rate = (lr / LR_FACTOR).max(lr.min(LR_RANGE[0]));
@@ -334,14 +402,17 @@ impl PpoLearner {
             ("policy_loss", mean(0)),
             ("value_loss", mean(1)),
             ("entropy", mean(2)),
-            ("kl", mean(3)),
+            ("kl", mean(KL)),
             ("clip_fraction", mean(4)),
             (
                 "explained_variance",
                 scale[scale::EXPLAINED_VARIANCE].into(),
             ),
             ("grad_norm", grad_norm.into()),
-            ("learning_rate", self.learning_rate),
+            (
+                "learning_rate",
+                self.learning_rate * f64::from(self.adam.rate()?),
+            ),
         ];
         match losses.iter().find(|(_, value)| !value.is_finite()) {
             None => Ok(losses),
@@ -353,15 +424,16 @@ impl PpoLearner {
             ),
         }
     }
-}
 
-impl Algorithm for PpoLearner {
-    fn iterate(&mut self, envs: &mut EnvBatch, steps: u64) -> Result<Iteration> {
-        let begin = Instant::now();
-        let range = self.networks.log_std();
-        let log_std = self.parameters.copy(&self.device, range);
-        let [policy_s, env_s] = self.collect(envs, &log_std)?;
-        self.learn(&log_std);
+    /// Closes an iteration whose rollouts have been learned from: what it lost and what its environments
+    /// counted. `begin` is when it began, `steps` are the environment steps before it.
+    pub(in crate::rl) fn conclude(
+        &mut self,
+        envs: &mut EnvBatch,
+        steps: u64,
+        begin: Instant,
+        [policy_s, env_s]: [f64; 2],
+    ) -> Result<Iteration> {
         let losses = self.losses()?;
         let names = envs.stat_names();
         let mut sums = Array::zeroed(&self.device, names.len());
@@ -384,11 +456,23 @@ impl Algorithm for PpoLearner {
             learn_s: begin.elapsed().as_secs_f64() - policy_s - env_s,
         })
     }
+}
+
+impl Algorithm for PpoLearner {
+    fn iterate(&mut self, envs: &mut EnvBatch, steps: u64) -> Result<Iteration> {
+        let begin = Instant::now();
+        let [_, env_s] = self.collect(envs)?;
+        self.estimate()?;
+        let policy_s = begin.elapsed().as_secs_f64() - env_s;
+        self.learn();
+        self.conclude(envs, steps, begin, [policy_s, env_s])
+    }
 
     fn policy(&self) -> Result<Policy> {
         let normalizer = self.observation_normalizer.as_ref();
         let spec = &self.spec;
-        let mut policy = Policy::new(&self.config.network, &spec.observation, spec.action)?;
+        let (action, values) = (spec.action, self.sources.len());
+        let mut policy = Policy::new(&self.config.network, &spec.observation, action, values)?;
         policy.parameters = self.parameters.read(&self.device)?;
         policy.normalizer = normalizer.map(RunningMeanStd::on_host).transpose()?;
         Ok(policy)

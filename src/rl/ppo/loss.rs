@@ -21,6 +21,8 @@ pub struct LossCoefficients {
     pub entropy_coefficient: f32,
     /// Weight of the penalty on the KL divergence, as it is adapted by now.
     pub kl_coefficient: f32,
+    /// 1 where standard deviations are learned, 0 where they stay.
+    pub std_coefficient: f32,
     /// 1 / samples of the mean.
     pub inv_count: f32,
 }
@@ -34,16 +36,19 @@ impl LossCoefficients {
             value_coefficient: config.value_coefficient as f32,
             entropy_coefficient: config.entropy_coefficient as f32,
             kl_coefficient: kl_coefficient as f32,
+            std_coefficient: if config.fixed_std { 0.0 } else { 1.0 },
             inv_count: 1.0,
         }
     }
 }
 
 /// PPO's loss of samples whose numbers are observation, action, old mean, old log probability, advantage,
-/// target, old value. The actor is network 0, the critic network 1.
+/// targets, old values. The actor is network 0, the critic network 1.
 pub struct PpoLoss<'a> {
     /// Numbers of an action.
     pub action: usize,
+    /// Numbers of the critic's output: a value of each stream of rewards.
+    pub values: usize,
     /// Indices of the logarithms of the standard deviations in the flat vector, behind the networks.
     pub log_std: Range<usize>,
     /// `[action]`, as they were when the policy acted.
@@ -64,6 +69,7 @@ impl PpoLoss<'_> {
             value_coefficient: coefficients.value_coefficient,
             entropy_coefficient: coefficients.entropy_coefficient,
             kl_coefficient: coefficients.kl_coefficient,
+            std_coefficient: coefficients.std_coefficient,
             inv_count: coefficients.inv_count,
         }
     }
@@ -76,9 +82,17 @@ impl Objective for PpoLoss<'_> {
             0 => {
                 let log_std = &batch.parameters[self.log_std.clone()];
                 let old_log_std = self.old_log_std.host();
-                ppo_loss::actor(log_std, old_log_std, batch.rows, outputs, extras, &params);
+                ppo_loss::actor(
+                    log_std,
+                    old_log_std,
+                    batch.rows,
+                    outputs,
+                    extras,
+                    self.values,
+                    &params,
+                );
             }
-            _ => ppo_loss::critic(batch.rows, outputs, extras, &params),
+            _ => ppo_loss::critic(batch.rows, outputs, extras, self.values, &params),
         }
     }
 

@@ -29,10 +29,14 @@ pub struct Ppo {
     pub final_lr_fraction: f64,
     /// Environment steps of the fall; 0 for none.
     pub anneal_steps: u64,
+    /// Learning rate of the critic; 0 for that of the actor.
+    pub critic_learning_rate: f64,
     /// After each update the learning rate is divided by 1.5 if the mean KL divergence was over
     /// twice this (down to 1e-5), multiplied by 1.5 if under half of it (up to 1e-2). 0 leaves it
     /// alone.
     pub desired_kl: f64,
+    /// Whether it is adapted before each minibatch instead, between 2e-5 and 3e-3; the critic's stays.
+    pub adapt_each_minibatch: bool,
     /// Discount factor of a step.
     pub gamma: f32,
     /// Decay of generalised advantage estimation, per step: 0 for one-step temporal differences, 1 for
@@ -55,6 +59,8 @@ pub struct Ppo {
     pub max_grad_norm: f64,
     /// Starting standard deviation of the actions, in normalised units, as a natural logarithm.
     pub init_log_std: f32,
+    /// Whether the standard deviation of the actions stays as it starts.
+    pub fixed_std: bool,
     /// Whether observations are normalised by their running mean and standard deviation.
     pub normalize_observations: bool,
     /// Hidden layers of the actor, and of the critic.

@@ -1,5 +1,7 @@
 //! The tasks, a file each, and the one list of them.
 
+pub mod imitate;
+mod motions;
 pub mod obstacles;
 pub mod plane;
 mod presets;
@@ -10,7 +12,12 @@ use super::run_dir::RunDir;
 use super::task::TaskEntry;
 
 /// Every task there is.
-pub static REGISTRY: [TaskEntry; 3] = [plane::ENTRY, obstacles::ENTRY, stand::ENTRY];
+pub static REGISTRY: [TaskEntry; 4] = [
+    plane::ENTRY,
+    obstacles::ENTRY,
+    stand::ENTRY,
+    imitate::ENTRY,
+];
 
 /// A task by name.
 ///

@@ -34,6 +34,7 @@ fn preset(preset: Preset) -> TaskPreset {
     TaskPreset {
         settings: with_weights(&task, Weights::PAPER),
         ppo,
+        amp: None,
         steps: 6_000_000,
     }
 }

@@ -35,6 +35,7 @@ fn preset(preset: Preset) -> TaskPreset {
             Preset::Fast => fast(),
             Preset::Paper => paper(),
         },
+        amp: None,
         steps: 1_000_000,
     }
 }

@@ -14,7 +14,9 @@ pub fn fast() -> Ppo {
         learning_rate: 2e-3,
         final_lr_fraction: 1.0,
         anneal_steps: 0,
+        critic_learning_rate: 0.0,
         desired_kl: 0.0,
+        adapt_each_minibatch: false,
         gamma: 0.95,
         lambda: 0.95,
         clip: 0.2,
@@ -25,6 +27,7 @@ pub fn fast() -> Ppo {
         kl_penalty_target: 0.01,
         max_grad_norm: 1.0,
         init_log_std: 0.0,
+        fixed_std: false,
         normalize_observations: false,
         network: dense(),
     }
@@ -40,7 +43,9 @@ pub fn paper() -> Ppo {
         learning_rate: 5e-5,
         final_lr_fraction: 1.0,
         anneal_steps: 0,
+        critic_learning_rate: 0.0,
         desired_kl: 0.0,
+        adapt_each_minibatch: false,
         gamma: 0.99,
         lambda: 1.0,
         clip: 0.3,
@@ -53,6 +58,7 @@ pub fn paper() -> Ppo {
         // The paper names none. At 0 a seed in three is still wandering after 100,000 steps, at 0.3 one
         // in four.
         init_log_std: 0.6,
+        fixed_std: false,
         normalize_observations: false,
         network: dense(),
     }

@@ -2,7 +2,8 @@
 
 use super::presets::fast;
 use crate::env::humanoid::stand::evaluate::{StandReport, evaluate, record};
-use crate::env::humanoid::stand::{Stand, open, spec};
+use crate::env::humanoid::stand::{Stand, StandTask};
+use crate::env::humanoid::task::{open, spec};
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::nn::Policy;
@@ -57,6 +58,7 @@ fn preset(_: Preset) -> TaskPreset {
             },
             ..fast()
         },
+        amp: None,
         steps: 2_300_000,
     }
 }
@@ -64,30 +66,29 @@ fn preset(_: Preset) -> TaskPreset {
 fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
     let stand: Stand = settings(&config.task.settings)?;
     stand.check().map_err(ConfigError::Settings)?;
-    config.check_rollout(stand.episode_steps())?;
     match config.data {
         Some(_) => Err(ConfigError::Settings(
             "the task `stand` uses no motion: leave out `data`".into(),
         )),
-        None => Ok(spec(config.ppo.envs)),
+        None => Ok(spec(&scenes::humanoid(), 0, config.ppo.envs)),
     }
 }
 
 fn load(config: &Config) -> Result<Loaded> {
     Ok(Loaded {
-        task: Box::new(StandTask::new(config)?),
+        task: Box::new(StandTraining::new(config)?),
         notes: Vec::new(),
     })
 }
 
-struct StandTask {
+struct StandTraining {
     stand: Stand,
 }
 
-impl StandTask {
+impl StandTraining {
     fn new(config: &Config) -> Result<Self, ConfigError> {
         let stand = settings(&config.task.settings)?;
-        Ok(StandTask { stand })
+        Ok(StandTraining { stand })
     }
 
     fn rate(&self, policy: &Policy, episodes: usize) -> StandReport {
@@ -96,13 +97,13 @@ impl StandTask {
     }
 }
 
-impl Task for StandTask {
+impl Task for StandTraining {
     fn settings(&self) -> toml::Table {
         table(&self.stand)
     }
 
     fn with_choices(&self, config: &Config) -> Result<Box<dyn Task>, ConfigError> {
-        Ok(Box::new(StandTask::new(config)?))
+        Ok(Box::new(StandTraining::new(config)?))
     }
 
     fn fingerprint(&self) -> u32 {
@@ -114,8 +115,9 @@ impl Task for StandTask {
     }
 
     fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
+        let task = Arc::new(StandTask::new(&self.stand, seed));
         EnvBatch::open(device, envs, None, |part| {
-            open(device, &self.stand, part, seed)
+            open(device, task.clone(), part, seed)
         })
     }
 
@@ -137,7 +139,7 @@ impl Task for StandTask {
             "{:.1} % of {} episodes stay up for {} s, {:.2} s on average",
             100.0 * found.success,
             found.episodes,
-            self.stand.episode_s,
+            self.stand.rules.episode_s,
             found.measure("episode_length_mean_s")
         )
     }

@@ -6,17 +6,41 @@ use crate::support::inputs::{Draw, POISON, gpu};
 use footwork::container::Section;
 use footwork::env::humanoid::action::rest_action;
 use footwork::env::humanoid::stand::evaluate::{evaluate, record};
-use footwork::env::humanoid::stand::{self, Stand, spec};
+use footwork::env::humanoid::stand::{Stand, StandTask};
 use footwork::env::humanoid::starts::{START_STATES, StartSpread, lowest_point, start_states};
+use footwork::env::humanoid::task::{EpisodeRules, open};
 use footwork::env::{EnvBatch, Stats, Transition, VecEnv, termination};
 use footwork::gpu::{Array, Device};
-use footwork::kernels::humanoid::stand_reward;
-use footwork::kernels::humanoid::stand_reward::{has_fallen, stillness, uprightness};
+use footwork::kernels::humanoid::end_episode::{self, has_fallen};
+use footwork::kernels::humanoid::stand_reward::{stillness, uprightness};
 use footwork::physics::kinematics::kinematics;
 use footwork::physics::pose::Pose;
 use footwork::physics::scenes;
 use footwork::physics::spatial::Spatial;
 use glam::{Quat, Vec3};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Environments of the task `stand`.
+fn opened(device: &Device, stand: &Stand, envs: Range<usize>, seed: u32) -> Box<dyn VecEnv> {
+    let task = Arc::new(StandTask::new(stand, seed));
+    open(device, task, envs, seed).unwrap()
+}
+
+/// Choices with episodes of so many seconds.
+fn short(episode_s: f32) -> Stand {
+    let rules = EpisodeRules {
+        episode_s,
+        ..EpisodeRules::default()
+    };
+    Stand {
+        rules,
+        ..Stand::default()
+    }
+}
+
+/// Numbers that the body observes of itself.
+const OBSERVATION: usize = 105;
 
 /// Columns of a rollout, and the environments that fill them.
 struct Rollout {
@@ -29,11 +53,11 @@ struct Rollout {
 
 impl Rollout {
     fn new(device: &Device, envs: usize, steps: usize) -> Rollout {
-        let dim = spec(envs).observation.dim();
+        let dim = OBSERVATION;
         Rollout {
             reward: Array::from_slice(device, &vec![POISON; steps * envs]),
             termination: Array::from_slice(device, &vec![POISON.to_bits(); steps * envs]),
-            final_observation: Array::from_slice(device, &vec![POISON; envs * dim]),
+            final_observation: Array::from_slice(device, &vec![POISON; steps * envs * dim]),
             device: device.clone(),
             steps: 0,
         }
@@ -63,7 +87,7 @@ impl Rollout {
 
 /// Actions near the standing pose.
 fn actions(draw: &mut Draw, envs: usize) -> Vec<f32> {
-    let rest = rest_action(&scenes::humanoid());
+    let rest = rest_action(&scenes::humanoid(), &scenes::humanoid().qpos0);
     let rows = std::iter::repeat_n(rest, envs).flatten();
     rows.map(|action| action + 0.05 * draw.normal()).collect()
 }
@@ -79,11 +103,8 @@ fn sums(device: &Device, envs: &mut dyn VecEnv) -> Stats {
 fn the_gpu_plays_what_the_cpu_plays() {
     let (cpu, gpu) = (Device::Cpu, Device::from(gpu()));
     let (envs, steps) = (70, 12);
-    let stand = Stand {
-        episode_s: 0.5,
-        ..Stand::default()
-    };
-    let open = |device| stand::open(device, &stand, 5..5 + envs, 3).unwrap();
+    let stand = short(0.5);
+    let open = |device| opened(device, &stand, 5..5 + envs, 3);
     let (mut one, mut other) = (open(&cpu), open(&gpu));
     let mut rollouts = [&cpu, &gpu].map(|device| Rollout::new(device, envs, steps));
     let mut draw = Draw::new(1);
@@ -118,12 +139,9 @@ fn the_gpu_plays_what_the_cpu_plays() {
 #[test]
 fn parts_play_what_all_play() {
     let (envs, steps) = (22, 40);
-    let stand = Stand {
-        episode_s: 1.0,
-        ..Stand::default()
-    };
-    let mut all = stand::open(&Device::Cpu, &stand, 0..envs, 7).unwrap();
-    let open = |range| stand::open(&Device::Cpu, &stand, range, 7);
+    let stand = short(1.0);
+    let mut all = opened(&Device::Cpu, &stand, 0..envs, 7);
+    let open = |range| Ok(opened(&Device::Cpu, &stand, range, 7));
     let mut batch = EnvBatch::open(&Device::Cpu, envs, None, open).unwrap();
     assert_eq!(batch.parts.len(), 4);
     let mut whole = Rollout::new(&Device::Cpu, envs, steps);
@@ -173,12 +191,9 @@ fn parts_play_what_all_play() {
 fn a_saved_state_goes_on_as_if_nothing_had_happened() {
     for device in [Device::Cpu, Device::from(gpu())] {
         let (envs, steps) = (9, 8);
-        let stand = Stand {
-            episode_s: 0.4,
-            ..Stand::default()
-        };
+        let stand = short(0.4);
         let mut draw = Draw::new(3);
-        let open = || stand::open(&device, &stand, 2..2 + envs, 5).unwrap();
+        let open = || opened(&device, &stand, 2..2 + envs, 5);
         let mut original = open();
         let mut rollout = Rollout::new(&device, envs, 2 * steps);
         for _ in 0..steps {
@@ -211,7 +226,7 @@ fn the_number_of_threads_does_not_matter() {
     let play = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap().install(|| {
-            let mut envs = stand::open(&Device::Cpu, &Stand::default(), 0..33, 1).unwrap();
+            let mut envs = opened(&Device::Cpu, &Stand::default(), 0..33, 1);
             let mut rollout = Rollout::new(&Device::Cpu, 33, 20);
             let mut draw = Draw::new(4);
             let seen = (0..20).map(|_| rollout.step(envs.as_mut(), &actions(&mut draw, 33)));
@@ -250,7 +265,7 @@ fn starts_stand_on_the_ground_and_differ() {
 fn wild_actions_never_bring_numbers_that_are_none() {
     for device in [Device::Cpu, Device::from(gpu())] {
         let envs = 16;
-        let mut batch = stand::open(&device, &Stand::default(), 0..envs, 1).unwrap();
+        let mut batch = opened(&device, &Stand::default(), 0..envs, 1);
         let mut rollout = Rollout::new(&device, envs, 40);
         let mut draw = Draw::new(5);
         for _ in 0..40 {
@@ -274,7 +289,7 @@ fn wild_actions_never_bring_numbers_that_are_none() {
 fn a_diverged_world_fails_and_begins_anew() {
     for device in [Device::Cpu, Device::from(gpu())] {
         let envs = 5;
-        let mut batch = stand::open(&device, &Stand::default(), 0..envs, 1).unwrap();
+        let mut batch = opened(&device, &Stand::default(), 0..envs, 1);
         let mut section = Section::default();
         batch.save(&mut section).unwrap();
         let model = scenes::humanoid();
@@ -314,11 +329,10 @@ fn reward_terms_of_simple_cases() {
 fn a_body_has_fallen_when_a_part_is_low() {
     let model = scenes::humanoid();
     let index = |name: &str| model.body(name).unwrap() as u32;
-    let params = stand_reward::Params {
+    let params = end_episode::Params {
         bodies: model.bodies.len() as u32,
         head: index("head"),
         pelvis: index("pelvis"),
-        torso: index("torso"),
         right_foot: index("right_foot"),
         left_foot: index("left_foot"),
         min_head: 0.9,
@@ -349,9 +363,9 @@ fn a_body_has_fallen_when_a_part_is_low() {
 #[test]
 fn an_evaluation_tells_how_long_bodies_stay_up() {
     let stand = Stand::default();
-    let rest = rest_action(&scenes::humanoid());
+    let rest = rest_action(&scenes::humanoid(), &scenes::humanoid().qpos0);
     let policy = |observation: &[f32]| {
-        let rows = observation.len() / spec(1).observation.dim();
+        let rows = observation.len() / OBSERVATION;
         rest.repeat(rows)
     };
     let report = evaluate(&stand, &policy, 20, 4);
@@ -369,17 +383,16 @@ fn an_evaluation_tells_how_long_bodies_stay_up() {
 #[test]
 fn choices_that_cannot_be_played_are_refused() {
     assert_eq!(Stand::default().check(), Ok(()));
-    assert_eq!(Stand::default().episode_steps(), 300);
+    assert_eq!(Stand::default().rules.steps(), 300);
     let wrong = |change: fn(&mut Stand)| {
         let mut stand = Stand::default();
         change(&mut stand);
         stand.check().unwrap_err()
     };
-    assert!(wrong(|stand| stand.episode_s = 0.0).contains("episode_s"));
+    assert!(wrong(|stand| stand.rules.episode_s = 0.0).contains("episode_s"));
     assert!(wrong(|stand| stand.min_push = -1.0).contains("min_push"));
     assert!(wrong(|stand| stand.min_push = 16.0).contains("must not exceed"));
     assert!(wrong(|stand| stand.start_tilt = f32::NAN).contains("start_tilt"));
-    assert!(toml::from_str::<Stand>("episodes = 3").is_err());
     let short: Stand = toml::from_str("episode_s = 5.0").unwrap();
-    assert_eq!(short.episode_steps(), 150);
+    assert_eq!(short.rules.steps(), 150);
 }

@@ -4,11 +4,11 @@
 
 use crate::inputs::{Draw, POISON, SIZES, close, same};
 use footwork::kernels::humanoid::{
-    action_targets, draw_starts, episode_sums, random_pushes, stand_reward,
+    action_targets, draw_starts, end_episode, episode_sums, random_pushes, stand_reward,
 };
 use footwork::kernels::physics::smooth_dynamics::POSE_DIM;
-use footwork::kernels::termination::{FAILED, RUNNING, TRUNCATED};
-use stand_reward::FIELDS;
+use footwork::kernels::termination::{FAILED, RUNNING, SUCCESS, TRUNCATED};
+use end_episode::fields;
 
 #[test]
 fn action_targets_agree() {
@@ -133,8 +133,34 @@ fn sums_agree_and_start_anew() {
     }
 }
 
-fn reward_params(envs: usize) -> stand_reward::Params {
-    stand_reward::Params {
+#[test]
+fn stand_reward_agrees() {
+    let mut draw = Draw::new(4);
+    for envs in SIZES {
+        let params = stand_reward::Params {
+            envs: envs as u32,
+            at: 4,
+            nq: 12,
+            nv: 11,
+            torso: 2,
+            alive_reward: 0.3,
+            upright_reward: 0.5,
+            stillness_reward: 0.2,
+        };
+        let state = draw.normals(23 * envs);
+        let poses = draw.normals(5 * POSE_DIM * envs);
+        let forms = forms!(
+            stand_reward, STAND_REWARD, envs, params; state, poses, out 4 + envs, out envs
+        );
+        for (form, got) in forms.shaders() {
+            close(form, &got.0, &forms.twin.0, |_| 1e-5);
+            close(form, &got.1, &forms.twin.1, |_| 1e-5);
+        }
+    }
+}
+
+fn end_params(envs: usize, measures: usize) -> end_episode::Params {
+    end_episode::Params {
         envs: envs as u32,
         at: 4,
         nq: 12,
@@ -142,64 +168,62 @@ fn reward_params(envs: usize) -> stand_reward::Params {
         bodies: 5,
         head: 1,
         pelvis: 0,
-        torso: 2,
         right_foot: 3,
         left_foot: 4,
+        measures: measures as u32,
         max_steps: 300,
+        successes: 1 << SUCCESS | 1 << TRUNCATED,
         min_head: 0.9,
         min_pelvis: 0.5,
         min_body: 0.15,
         max_speed: 1000.0,
-        alive_reward: 0.3,
-        upright_reward: 0.5,
-        stillness_reward: 0.2,
     }
 }
 
 #[test]
-fn stand_reward_agrees() {
-    let mut draw = Draw::new(4);
-    for envs in SIZES {
-        let params = reward_params(envs);
+fn ends_agree() {
+    let mut draw = Draw::new(5);
+    for (envs, measures) in SIZES.into_iter().zip([0, 1, 2, 5].into_iter().cycle()) {
+        let params = end_params(envs, measures);
         let mut state = draw.normals(23 * envs);
         // Some diverge.
         for env in (0..envs).step_by(7) {
             let worst = [f32::NAN, f32::INFINITY, 1e4][env % 3];
             state[(12 + env % 11) * envs + env] = worst;
         }
-        let mut poses = draw.normals(5 * POSE_DIM * envs);
-        for body in 0..5 {
+        let mut poses = draw.normals(6 * POSE_DIM * envs);
+        for body in 0..6 {
             for env in 0..envs {
                 // Most stand.
                 poses[(POSE_DIM * body + 2) * envs + env] = 1.2 + 0.3 * draw.normal();
             }
         }
-        let mut episode = draw.normals(FIELDS * envs);
+        let task_end: Vec<u32> = (0..envs).map(|env| u32::from(env % 6 == 5)).collect();
+        let mut episode = draw.normals(fields(measures) * envs);
         for env in 0..envs {
             // Step and limit.
             episode[env] = (env % 5) as f32;
             episode[envs + env] = 4.0;
         }
+        let reward = draw.normals(4 + envs);
+        let measured = draw.normals(measures.max(1) * envs);
         let forms = forms!(
-            stand_reward, STAND_REWARD, envs, params;
-            state, poses, mut episode, out 4 + envs, mut vec![9u32; 4 + envs], out envs
+            end_episode, END_EPISODE, envs, params;
+            state, poses, measured, task_end, mut episode, mut reward,
+            mut vec![9u32; 4 + envs], out envs
         );
         let twin: &(Vec<f32>, Vec<f32>, Vec<u32>, Vec<u32>) = &forms.twin;
         for (form, got) in forms.shaders() {
             close(form, &got.0, &twin.0, |_| 1e-5);
-            close(form, &got.1, &twin.1, |_| 1e-5);
+            same(form, &got.1, &twin.1);
             assert_eq!((&got.2, &got.3), (&twin.2, &twin.3), "{form}");
         }
         assert_eq!(twin.2[4..], twin.3);
-        for env in 0..envs {
-            let gain = twin.1[4 + env];
-            assert!(gain.is_finite());
-            if env % 7 == 0 {
-                assert_eq!((gain, twin.3[env]), (0.0, FAILED));
-            }
+        for env in (0..envs).step_by(7) {
+            assert_eq!((twin.1[4 + env], twin.3[env]), (0.0, FAILED));
         }
         if envs == 1000 {
-            for end in [RUNNING, TRUNCATED, FAILED] {
+            for end in [RUNNING, SUCCESS, TRUNCATED, FAILED] {
                 assert!(twin.3.contains(&end), "{end}");
             }
         }

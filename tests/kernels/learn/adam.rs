@@ -15,10 +15,11 @@ fn adam_agrees() {
         let v: Vec<f32> = some().into_iter().map(|value| value * value).collect();
         let mut norm_partials = vec![0.0; NORM_PARTIALS];
         grad_norm::twin(&gradient, &mut norm_partials);
-        let params = adam::Params::new(parameters, 3, 0.01, max_grad_norm);
+        let params = adam::Params::new(parameters, 3, 0.01, max_grad_norm, parameters / 3..parameters / 2);
+        let rates = [1.0, 0.25];
         let forms = forms!(
             adam, ADAM, groups(parameters), params;
-            gradient, norm_partials, mut start, mut m, mut v
+            gradient, norm_partials, mut start, mut m, mut v, rates
         );
         for (form, (parameters, m, v)) in forms.shaders() {
             agree(&format!("parameters, {form}"), parameters, &forms.twin.0);
@@ -36,7 +37,9 @@ fn adam_agrees() {
             let gradient = gradient[i] * scale;
             let m = (0.9 * m[i] + 0.1 * gradient) / (1.0 - 0.9f64.powi(3));
             let v = (0.999 * v[i] + 0.001 * gradient * gradient) / (1.0 - 0.999f64.powi(3));
-            (f64::from(start[i]) - 0.01 * m / (v.sqrt() + 1e-5)) as f32
+            let second = (parameters / 3..parameters / 2).contains(&i);
+            let lr = if second { 0.0025 } else { 0.01 };
+            (f64::from(start[i]) - lr * m / (v.sqrt() + 1e-5)) as f32
         });
         let stepped: Vec<f32> = stepped.collect();
         crate::inputs::close("algorithm 1", &forms.twin.0, &stepped, |_| 1e-5);

@@ -54,6 +54,8 @@ impl Case {
                 lambda: 0.95,
                 bootstrap: 1 << termination::TRUNCATED,
                 final_steps: 1,
+                streams: 1,
+                stream: 0,
             },
         }
     }

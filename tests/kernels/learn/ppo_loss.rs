@@ -5,7 +5,10 @@ use crate::inputs::Draw;
 use crate::support::forms::Forms;
 use footwork::kernels::learn::ppo_loss::{self, Params, SUMS};
 
-const WIDTH: usize = OBSERVATION + 2 * ACTION + 4;
+/// Streams of rewards, each with a value.
+const VALUES: usize = 2;
+const SCALARS: usize = 2 + 2 * VALUES;
+const WIDTH: usize = OBSERVATION + 2 * ACTION + SCALARS;
 /// Rows before the minibatch.
 const START: usize = 6;
 /// Where `log_std` begins in the parameters.
@@ -30,12 +33,12 @@ impl Case {
         let mut samples = some((START + rows + 2) * WIDTH);
         for sample in samples.chunks_exact_mut(WIDTH) {
             // About what the actions have.
-            sample[WIDTH - 4] = 1.5 * sample[WIDTH - 4] - 12.5;
+            sample[WIDTH - SCALARS] = 1.5 * sample[WIDTH - SCALARS] - 12.5;
         }
         Case {
             samples,
             parameters: [vec![9.0; LOG_STD], vec![-0.5; ACTION]].concat(),
-            outputs: some(rows * (ACTION + 1)),
+            outputs: some(rows * (ACTION + VALUES)),
             params: Params {
                 rows: rows as u32,
                 start: START as u32,
@@ -45,6 +48,7 @@ impl Case {
                 value_coefficient: 0.7,
                 entropy_coefficient: 0.01,
                 kl_coefficient: 0.2,
+                std_coefficient: 1.0,
                 inv_count: 1.0 / rows as f32,
             },
         }
@@ -55,7 +59,7 @@ impl Case {
     }
 
     fn run(&self) -> Forms<(Vec<f32>, Vec<f32>)> {
-        let dims = [OBSERVATION, LOG_STD, ACTION, 1].map(|dim| dim as u32);
+        let dims = [OBSERVATION, LOG_STD, ACTION, VALUES].map(|dim| dim as u32);
         forms!(
             both, PPO_LOSS, self.rows(), self.params;
             dims, self.samples, self.parameters, OLD_LOG_STD, self.outputs,
@@ -84,14 +88,15 @@ mod both {
         let (means, values) = output_grads.split_at_mut(rows * ACTION);
         let (answered, valued) = outputs.split_at(rows * ACTION);
         means.copy_from_slice(answered);
-        values[..rows].copy_from_slice(valued);
+        values.copy_from_slice(valued);
         for row in 0..rows {
             let sample = &samples[(params.start as usize + row) * WIDTH..][..WIDTH];
             let extras = &mut extras[row * (ACTION + SUMS)..][..ACTION + SUMS];
             extras.fill(0.0);
             let mean = &mut means[row * ACTION..][..ACTION];
-            ppo_loss::actor(log_std, old_log_std, &[sample], mean, extras, params);
-            ppo_loss::critic(&[sample], &mut values[row..=row], extras, params);
+            let values = &mut values[row * VALUES..][..VALUES];
+            ppo_loss::actor(log_std, old_log_std, &[sample], mean, extras, VALUES, params);
+            ppo_loss::critic(&[sample], values, extras, VALUES, params);
         }
     }
 }
@@ -109,7 +114,7 @@ fn ppo_loss_agrees() {
 
 /// The loss of a sample as Schulman et al. 2017, equations 7 to 9, have it, with a penalty on the KL
 /// divergence of the new policy from the old (equation 8) and a bound on the critic's change.
-fn plain(case: &Case, row: usize, mean: &[f64], log_std: &[f64], value: f64) -> f64 {
+fn plain(case: &Case, row: usize, mean: &[f64], log_std: &[f64], values: &[f64]) -> f64 {
     let params = &case.params;
     let sample = &case.samples[(START + row) * WIDTH..][..WIDTH];
     let at = |i: usize| f64::from(sample[i]);
@@ -125,17 +130,33 @@ fn plain(case: &Case, row: usize, mean: &[f64], log_std: &[f64], value: f64) -> 
         kl += (deviation / old).ln() + moved / (2.0 * deviation.powi(2)) - 0.5;
         entropy += (deviation * (tau * std::f64::consts::E).sqrt()).ln();
     }
-    let ratio = (log_prob - at(WIDTH - 4)).exp();
-    let advantage = at(WIDTH - 3);
+    let scalars = WIDTH - SCALARS;
+    let ratio = (log_prob - at(scalars)).exp();
+    let advantage = at(scalars + 1);
     let (low, high) = (1.0 - f64::from(params.clip), 1.0 + f64::from(params.clip));
     let surrogate = (ratio * advantage).min(ratio.clamp(low, high) * advantage);
-    let (target, old_value) = (at(WIDTH - 2), at(WIDTH - 1));
     let limit = f64::from(params.value_clip);
-    let near = old_value + (value - old_value).clamp(-limit, limit);
-    let error = (value - target).powi(2).max((near - target).powi(2));
+    let errors = values.iter().enumerate().map(|(i, value)| {
+        let (target, old_value) = (at(scalars + 2 + i), at(scalars + 2 + VALUES + i));
+        let near = old_value + (value - old_value).clamp(-limit, limit);
+        (value - target).powi(2).max((near - target).powi(2))
+    });
+    let error: f64 = errors.sum();
     -surrogate + 0.5 * f64::from(params.value_coefficient) * error
         - f64::from(params.entropy_coefficient) * entropy
         + f64::from(params.kl_coefficient) * kl
+}
+
+#[test]
+fn a_fixed_standard_deviation_has_no_gradient() {
+    let mut case = Case::new(75);
+    let (grads, _) = case.run().twin;
+    case.params.std_coefficient = 0.0;
+    for (form, got) in case.run().all() {
+        agree(&format!("grads, {form}"), &got.0, &grads);
+        let rows = got.1.chunks_exact(ACTION + SUMS);
+        assert!(rows.flat_map(|row| &row[..ACTION]).all(|&grad| grad == 0.0), "{form}");
+    }
 }
 
 #[test]
@@ -150,14 +171,15 @@ fn its_gradient_is_that_of_the_papers_loss() {
         let point = [
             &case.outputs[mean.clone()],
             &case.parameters[LOG_STD..],
-            &case.outputs[values + row..][..1],
+            &case.outputs[values + row * VALUES..][..VALUES],
         ];
         let point: Vec<f64> = point.concat().into_iter().map(f64::from).collect();
         let extras = &extras[row * (ACTION + SUMS)..][..ACTION + SUMS];
-        let got = [&grads[mean], &extras[..ACTION], &grads[values + row..][..1]].concat();
+        let own = &grads[values + row * VALUES..][..VALUES];
+        let got = [&grads[mean], &extras[..ACTION], own].concat();
         let loss = |point: &[f64]| {
             let (mean, rest) = point.split_at(ACTION);
-            plain(&case, row, mean, &rest[..ACTION], rest[ACTION])
+            plain(&case, row, mean, &rest[..ACTION], &rest[ACTION..])
         };
         for (i, got) in got.into_iter().enumerate() {
             const STEP: f64 = 1e-6;

@@ -62,8 +62,11 @@ impl Case {
         let params = rollout_moments::Params {
             samples: self.samples() as u32,
             weight: self.weight,
+            streams: 1,
+            stream: 0,
         };
         let mut scale = [f32::NAN; scale::FIELDS];
+        scale[scale::WEIGHT] = 0.25;
         [scale[scale::OLD_MEAN], scale[scale::OLD_STD]] = self.old;
         forms!(
             rollout_moments, ROLLOUT_MOMENTS, [1, 1, 1], params;
@@ -152,6 +155,7 @@ impl Case {
             self.mean(&advantage),
             root(self.variance(&advantage, 0.0), 0.0),
             explained.map(|end| end + UNIT * end.abs()),
+            about(0.25, 0.0),
         ];
         ([mean, square], scale)
     }
@@ -169,6 +173,37 @@ impl Case {
             }
         }
         forms
+    }
+}
+
+/// Streams of rewards lie side by side, and leave each other alone.
+#[test]
+fn one_of_two_streams_is_as_if_alone() {
+    let case = Case::new(700, 3.0, 2.0, 6);
+    let beside = |values: &[f32]| -> Vec<f32> {
+        values.iter().flat_map(|&value| [f32::NAN, value]).collect()
+    };
+    let params = rollout_moments::Params {
+        samples: 700,
+        weight: case.weight,
+        streams: 2,
+        stream: 1,
+    };
+    let mut scale = [-1.0; 2 * scale::FIELDS];
+    [scale[8 + scale::OLD_MEAN], scale[8 + scale::OLD_STD]] = case.old;
+    let moments = [7.0, 8.0, case.moments[0], case.moments[1]];
+    let forms = forms!(
+        rollout_moments, ROLLOUT_MOMENTS, [1, 1, 1], params;
+        [vec![f32::NAN; 700], beside(&case.value)].concat(),
+        [beside(&case.advantage), beside(&case.returned)].concat(),
+        mut moments, mut scale
+    );
+    let alone = case.run();
+    for ((form, got), (_, want)) in forms.all().into_iter().zip(alone.all()) {
+        let (moments, scale): &Moments = got;
+        assert_eq!((&moments[..2], &moments[2..]), (&[7.0, 8.0][..], &want.0[..]), "{form}");
+        assert!(scale[..8].iter().all(|&value| value == -1.0), "{form}");
+        assert_eq!(scale[8..15], want.1[..7], "{form}");
     }
 }
 

@@ -1,31 +1,16 @@
-//! The choices of the task, and its dimensions.
+//! The choices of the task.
 
 use crate::env::humanoid::starts::StartSpread;
-use crate::env::spec::{EnvSpec, ObservationSpec};
-use crate::kernels::physics::proprioception;
-use crate::kernels::termination;
-use crate::physics::scenes;
-use crate::physics::simulator::{STEP_RATE, SUBSTEPS};
+use crate::env::humanoid::task::{EpisodeRules, check_range};
 use serde::{Deserialize, Serialize};
-
-/// Length of a step, s.
-pub const DT: f32 = SUBSTEPS as f32 / STEP_RATE;
-
-/// Bodies whose positions are observed.
-pub const KEY_BODIES: [&str; 4] = ["right_hand", "left_hand", "right_foot", "left_foot"];
 
 /// Choices of the task.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct Stand {
-    /// Length of an episode, s; it then ends as a success.
-    pub episode_s: f32,
-    /// Height of the head below which the character has fallen, m.
-    pub min_head_height: f32,
-    /// Height of the pelvis below which it has fallen, m.
-    pub min_pelvis_height: f32,
-    /// Height of any body but the feet below which it has fallen, m.
-    pub min_body_height: f32,
+    /// Length and failures of an episode.
+    #[serde(flatten)]
+    pub rules: EpisodeRules,
     /// Reward of a step for being up.
     pub alive_reward: f32,
     /// Reward of a step for the torso's up axis pointing up, falling with the cosine between them.
@@ -51,10 +36,7 @@ pub struct Stand {
 impl Default for Stand {
     fn default() -> Self {
         Stand {
-            episode_s: 10.0,
-            min_head_height: 0.9,
-            min_pelvis_height: 0.5,
-            min_body_height: 0.15,
+            rules: EpisodeRules::default(),
             alive_reward: 0.3,
             upright_reward: 0.5,
             stillness_reward: 0.2,
@@ -69,24 +51,13 @@ impl Default for Stand {
 }
 
 impl Stand {
-    /// Steps of an episode, which is also as long as a rollout may be: there is room for one final
-    /// observation of each environment.
-    pub fn episode_steps(&self) -> u32 {
-        (self.episode_s / DT).round() as u32
-    }
-
     /// Whether the choices can be played.
     ///
     /// # Errors
     /// The first that cannot.
     pub fn check(&self) -> Result<(), String> {
-        if !(DT..=3600.0).contains(&self.episode_s) {
-            return Err("episode_s must lie between 0.04 and 3600 s".into());
-        }
-        let rest = [
-            ("min_head_height", self.min_head_height),
-            ("min_pelvis_height", self.min_pelvis_height),
-            ("min_body_height", self.min_body_height),
+        self.rules.check()?;
+        check_range(&[
             ("alive_reward", self.alive_reward),
             ("upright_reward", self.upright_reward),
             ("stillness_reward", self.stillness_reward),
@@ -96,14 +67,10 @@ impl Stand {
             ("start_tilt", self.start_tilt),
             ("start_root_speed", self.start_root_speed),
             ("start_joint_speed", self.start_joint_speed),
-        ];
-        let fits = |value: f32| (0.0..=1000.0).contains(&value);
-        match rest.iter().find(|(_, value)| !fits(*value)) {
-            Some((name, _)) => Err(format!("{name} must lie between 0 and 1000")),
-            None if self.min_push > self.max_push => {
-                Err("min_push must not exceed max_push".into())
-            }
-            None => Ok(()),
+        ])?;
+        match self.min_push > self.max_push {
+            true => Err("min_push must not exceed max_push".into()),
+            false => Ok(()),
         }
     }
 
@@ -115,22 +82,5 @@ impl Stand {
             root_speed: self.start_root_speed,
             joint_speed: self.start_joint_speed,
         }
-    }
-}
-
-/// The dimensions of `envs` environments.
-pub fn spec(envs: usize) -> EnvSpec {
-    let model = scenes::humanoid();
-    EnvSpec {
-        envs,
-        agents: 1,
-        observation: ObservationSpec {
-            vector: proprioception::width(&model, 0, KEY_BODIES.len()),
-            grid: None,
-        },
-        action: model.nu(),
-        dt: DT,
-        bootstrap: 1 << termination::TRUNCATED,
-        bootstraps_often: false,
     }
 }

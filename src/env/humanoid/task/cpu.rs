@@ -1,16 +1,15 @@
-//! The task on all cores: each world plays its step from beginning to end while it is in the cache.
+//! A task on all cores: each world plays its step from beginning to end while it is in the cache.
 
 use super::common::Common;
+use super::{HumanoidTask, Moment};
 use crate::container::{Section, SectionError};
-use crate::env::humanoid::action::rest_action;
 use crate::env::humanoid::batch::{CpuSimulatorBatch, SimulatedWorld, SimulatorBatch};
 use crate::env::spec::EnvSpec;
 use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::Array;
 use crate::kernels::humanoid::action_targets::set_targets;
-use crate::kernels::humanoid::draw_starts::{self, start};
-use crate::kernels::humanoid::random_pushes::{self, push};
-use crate::kernels::humanoid::stand_reward::{self, Episode, FIELDS, LIMIT, STATS, SUMS};
+use crate::kernels::humanoid::draw_starts::start;
+use crate::kernels::humanoid::end_episode::{self, LIMIT, end, fields, sums_at};
 use crate::kernels::physics::proprioception;
 use crate::kernels::physics::smooth_dynamics;
 use crate::kernels::physics::solve_and_integrate::{
@@ -20,12 +19,18 @@ use crate::kernels::physics::strided::{gather, scatter};
 use crate::kernels::termination;
 use crate::physics::simulator::Simulator;
 use anyhow::Result;
+use std::ops::Range;
+use std::sync::Arc;
 
-pub struct CpuStand {
-    pub common: Common,
+/// Environments of a task on the CPU.
+pub struct CpuHumanoidEnv {
+    common: Common,
+    /// The physics.
     pub batch: CpuSimulatorBatch,
-    /// `[envs]`
-    pub episodes: Vec<Episode>,
+    /// Of each environment, see [`end_episode`].
+    pub episodes: Vec<Vec<f32>>,
+    /// What each environment carries for the task, `[envs][state_dim]`.
+    pub task_states: Vec<Vec<f32>>,
     /// `[envs][observation]` of this moment.
     observation: Vec<f32>,
 }
@@ -33,7 +38,8 @@ pub struct CpuStand {
 /// What a world reads and writes in a step.
 struct Row<'a> {
     action: &'a [f32],
-    episode: &'a mut Episode,
+    episode: &'a mut [f32],
+    task_state: &'a mut [f32],
     reward: &'a mut f32,
     termination: &'a mut u32,
     final_observation: &'a mut [f32],
@@ -41,50 +47,84 @@ struct Row<'a> {
 }
 
 /// Parameters of a step's kernels.
-struct StepParams {
-    pushes: random_pushes::Params,
-    reward: stand_reward::Params,
-    starts: draw_starts::Params,
+struct StepParams<'a> {
+    now: Moment,
+    next: Moment,
+    end_episode: end_episode::Params,
+    /// Pairs of bodies, one behind the other.
+    force_pairs: &'a [u32],
 }
 
-impl CpuStand {
+impl CpuHumanoidEnv {
+    /// Environments whose first episodes have their full length.
+    pub fn unstaggered(
+        task: Arc<dyn HumanoidTask>,
+        envs: Range<usize>,
+        seed: u32,
+    ) -> CpuHumanoidEnv {
+        let limits = vec![task.rules().steps() as f32; envs.len()];
+        CpuHumanoidEnv::new(Common::new(task, envs, seed), &limits)
+    }
+
     /// `limits`, `[envs]`, are the lengths of the first episodes in steps.
-    pub fn new(common: Common, limits: &[f32]) -> CpuStand {
+    pub(super) fn new(common: Common, limits: &[f32]) -> CpuHumanoidEnv {
         let mut batch = CpuSimulatorBatch::new(&common.batch);
-        let params = common.draw_starts(0);
-        for (env, world) in batch.worlds.iter_mut().enumerate() {
-            let start = start(&common.start_states, env, &params);
-            world.start.copy_from_slice(start);
-            world.reset();
+        let mut task_states = vec![vec![0.0; common.task.state_dim()]; limits.len()];
+        let moment = common.moment();
+        for (env, (world, state)) in batch.worlds.iter_mut().zip(&mut task_states).enumerate() {
+            common.begin(env, &moment, world, state);
         }
-        let mut episodes = vec![[0.0; FIELDS]; limits.len()];
+        let mut episodes = vec![vec![0.0; fields(common.measures)]; limits.len()];
         for (episode, &limit) in episodes.iter_mut().zip(limits) {
             episode[LIMIT] = limit;
         }
         let observation = vec![0.0; limits.len() * common.spec.observation.dim()];
-        let mut envs = CpuStand {
+        let mut envs = CpuHumanoidEnv {
             common,
             batch,
             episodes,
+            task_states,
             observation,
         };
         envs.observe_all();
         envs
     }
 
+    /// The task.
+    pub fn task(&self) -> &dyn HumanoidTask {
+        &*self.common.task
+    }
+
     fn observe_all(&mut self) {
         let (common, dim) = (&self.common, self.common.spec.observation.dim());
-        let mut rows: Vec<&mut [f32]> = self.observation.chunks_exact_mut(dim).collect();
-        self.batch.each(&mut rows, |_, simulator, world, row| {
-            simulator.kinematics(&world.state.q, &world.state.v);
-            common.observe(simulator, world, row);
-        });
+        let rows = self.observation.chunks_exact_mut(dim);
+        let mut rows: Vec<_> = rows.zip(&self.task_states).collect();
+        self.batch
+            .each(&mut rows, |_, simulator, world, (row, state)| {
+                simulator.kinematics(&world.state.q, &world.state.v);
+                common.observe(simulator, world, state, row);
+            });
     }
 }
 
 impl Common {
+    /// Begins an episode of a world.
+    fn begin(&self, env: usize, moment: &Moment, world: &mut SimulatedWorld, state: &mut [f32]) {
+        let drawn = start(self.task.start_states(), env, &self.draw_starts(moment));
+        world.start.copy_from_slice(drawn);
+        state.fill(0.0);
+        self.task.begin(env, moment, &mut world.start, state);
+        world.reset();
+    }
+
     /// Observes a world whose kinematics the simulator has computed.
-    fn observe(&self, simulator: &Simulator, world: &SimulatedWorld, out: &mut [f32]) {
+    fn observe(
+        &self,
+        simulator: &Simulator,
+        world: &SimulatedWorld,
+        state: &[f32],
+        out: &mut [f32],
+    ) {
         proprioception::observe(
             &simulator.model,
             &world.state.q,
@@ -94,6 +134,8 @@ impl Common {
             &self.characters[1..],
             out,
         );
+        let out = &mut out[self.body_dim()..];
+        self.task.observe(simulator, world, state, out);
     }
 
     /// Plays one step of a world.
@@ -106,36 +148,38 @@ impl Common {
         params: &StepParams,
     ) {
         set_targets(row.action, &self.action_scale, &mut world.targets);
-        let [x, y] = push(env, &params.pushes);
-        let force = &mut world.external_forces[params.pushes.body as usize].linear;
-        (force.x, force.y) = (x, y);
-        world.advance(simulator, &[]);
-        let SimulatedWorld { state, .. } = world;
-        simulator.kinematics(&state.q, &state.v);
-        let poses = &simulator.poses;
-        let (reward, end) =
-            stand_reward::step(&state.q, &state.v, poses, row.episode, &params.reward);
-        (*row.reward, *row.termination) = (reward, end);
-        if end == termination::TRUNCATED {
-            self.observe(simulator, world, row.final_observation);
-        }
+        self.task.act(env, &params.now, world);
+        world.advance(simulator, params.force_pairs);
+        simulator.kinematics(&world.state.q, &world.state.v);
+        let mut measures = vec![0.0; self.measures];
+        let task = &self.task;
+        let (reward, task_end) = task.reward(simulator, world, row.task_state, &mut measures);
+        *row.reward = reward;
+        let step = end_episode::Step {
+            q: &world.state.q,
+            v: &world.state.v,
+            poses: &simulator.poses,
+            measures: &measures,
+            task_end,
+        };
+        let end = end(&step, row.reward, row.episode, &params.end_episode);
+        *row.termination = end;
         if end != termination::RUNNING {
-            let start = start(&self.start_states, env, &params.starts);
-            world.start.copy_from_slice(start);
-            world.reset();
+            self.observe(simulator, world, row.task_state, row.final_observation);
+            self.begin(env, &params.next, world, row.task_state);
             simulator.kinematics(&world.state.q, &world.state.v);
         }
-        self.observe(simulator, world, row.observation);
+        self.observe(simulator, world, row.task_state, row.observation);
     }
 }
 
-impl VecEnv for CpuStand {
+impl VecEnv for CpuHumanoidEnv {
     fn spec(&self) -> &EnvSpec {
         &self.common.spec
     }
 
     fn rest_action(&self) -> Vec<f32> {
-        rest_action(&self.common.batch.model)
+        self.common.task.rest_action()
     }
 
     fn observe(&mut self, out: &mut Array, at: usize) {
@@ -144,24 +188,35 @@ impl VecEnv for CpuStand {
 
     fn step(&mut self, action: &Array, at: usize, out: Transition) {
         let (envs, dim) = (self.common.spec.envs, self.common.spec.observation.dim());
-        let counter = self.common.step_counter;
+        let now = self.common.moment();
+        let force_pairs = self.common.batch.force_pairs();
         let params = StepParams {
-            pushes: self.common.random_pushes(),
-            reward: self.common.stand_reward(0),
-            starts: self.common.draw_starts(counter + 1),
+            next: Moment {
+                step_counter: now.step_counter + 1,
+                ..now
+            },
+            now,
+            end_episode: self.common.end_episode(0),
+            force_pairs: &force_pairs[1..],
         };
         let actions = action.host()[at..].chunks_exact(self.common.spec.action);
         let rewards = &mut out.reward.host_mut()[out.step * envs..][..envs];
         let terminations = &mut out.termination.host_mut()[out.step * envs..][..envs];
-        let finals = out.final_observation.host_mut().chunks_exact_mut(dim);
+        let finals = &mut out.final_observation.host_mut()[self.common.spec.final_row(out.step) * dim..];
+        let finals = finals.chunks_exact_mut(dim);
         let observations = self.observation.chunks_exact_mut(dim);
-        let rows = actions.zip(&mut self.episodes).zip(rewards);
-        let rows = rows.zip(terminations).zip(finals).zip(observations);
+        let rows = actions.zip(&mut self.episodes).zip(&mut self.task_states);
+        let rows = rows.zip(rewards).zip(terminations);
+        let rows = rows.zip(finals.zip(observations));
         let mut rows: Vec<Row> = rows
             .map(
-                |(((((action, episode), reward), termination), last), observation)| Row {
+                |(
+                    ((((action, episode), task_state), reward), termination),
+                    (last, observation),
+                )| Row {
                     action,
                     episode,
+                    task_state,
                     reward,
                     termination,
                     final_observation: last,
@@ -177,36 +232,39 @@ impl VecEnv for CpuStand {
     }
 
     fn stat_names(&self) -> &'static [&'static str] {
-        &STATS
+        self.common.task.stat_names()
     }
 
     fn stats(&mut self, out: &mut Array) {
-        let out = out.host_mut();
-        for (index, sum) in out.iter_mut().enumerate() {
+        let sums = sums_at(self.common.measures);
+        for (index, sum) in out.host_mut().iter_mut().enumerate() {
             *sum = self
                 .episodes
                 .iter()
-                .map(|episode| episode[SUMS + index])
+                .map(|episode| episode[sums + index])
                 .sum();
         }
         for episode in &mut self.episodes {
-            episode[SUMS..].fill(0.0);
+            episode[sums..].fill(0.0);
         }
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {
         let (envs, model) = (self.common.spec.envs, &self.common.batch.model);
         let max_contacts = self.common.batch.options.max_contacts;
-        let mut episodes = vec![0.0; FIELDS * envs];
+        let mut episodes = vec![0.0; fields(self.common.measures) * envs];
+        let mut task_states = vec![0.0; self.common.task.state_dim() * envs];
         let mut warm_start = vec![0; warm_start_dim(max_contacts, model.joints.len()) * envs];
         for (env, world) in self.batch.worlds.iter().enumerate() {
             scatter(&mut episodes, envs, env, 0, &self.episodes[env]);
+            scatter(&mut task_states, envs, env, 0, &self.task_states[env]);
             write_warm_start(&world.state, &mut warm_start, envs, env, max_contacts);
         }
         to.put("step_counter", self.common.step_counter);
         to.put_array("state", &self.batch.state()?);
         to.put_array("warm_start", &warm_start);
         to.put_array("episodes", &episodes);
+        to.put_array("task_state", &task_states);
         Ok(())
     }
 
@@ -217,12 +275,15 @@ impl VecEnv for CpuStand {
         let step_counter = from.get("step_counter")?;
         let state = from.take_finite("state", (model.nq() + model.nv()) * envs)?;
         let warm_start: Vec<u32> = from.take_array("warm_start", warm_start_dim * envs)?;
-        let episodes = from.take_finite("episodes", FIELDS * envs)?;
+        let episodes = from.take_finite("episodes", fields(self.common.measures) * envs)?;
+        let task_states = self.common.task.state_dim() * envs;
+        let task_states = from.take_finite("task_state", task_states)?;
         self.common.step_counter = step_counter;
         for (env, world) in self.batch.worlds.iter_mut().enumerate() {
             smooth_dynamics::read(&model, &state, envs, env, &mut world.state);
             read_warm_start(&warm_start, envs, env, max_contacts, &mut world.state);
             gather(&episodes, envs, env, 0, &mut self.episodes[env]);
+            gather(&task_states, envs, env, 0, &mut self.task_states[env]);
         }
         self.observe_all();
         Ok(())

@@ -1,0 +1,81 @@
+//! Rows of arrays, on either device: picked, labelled, replaced.
+
+use crate::gpu::{Array, Device};
+#[cfg(feature = "gpu")]
+use crate::nn::gpu::tensors;
+
+/// The rows of `from`, `[..][width]`, by their numbers, `[n][width]`.
+pub fn pick(device: &Device, from: &Array, width: usize, rows: &[u32]) -> Array {
+    match device {
+        Device::Cpu => {
+            let row = |&row: &u32| &from.host()[row as usize * width..][..width];
+            Array::Host(rows.iter().flat_map(row).copied().collect())
+        }
+        #[cfg(feature = "gpu")]
+        Device::Gpu(gpu) => tensors::pick(gpu, from, width, rows),
+        #[cfg(not(feature = "gpu"))]
+        Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
+    }
+}
+
+/// Rows `[n][width + 1]`: those of `from`, each with its label behind it.
+pub fn labelled(device: &Device, from: &Array, width: usize, labels: &[f32]) -> Array {
+    match device {
+        Device::Cpu => {
+            let rows = from.host().chunks_exact(width).zip(labels);
+            let values = rows.flat_map(|(row, label)| row.iter().chain([label]));
+            Array::Host(values.copied().collect())
+        }
+        #[cfg(feature = "gpu")]
+        Device::Gpu(gpu) => tensors::labelled(gpu, from, width, labels),
+        #[cfg(not(feature = "gpu"))]
+        Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
+    }
+}
+
+/// All values of some arrays, one behind the other.
+pub fn join(device: &Device, parts: &[&Array]) -> Array {
+    match device {
+        Device::Cpu => {
+            let parts: Vec<&[f32]> = parts.iter().map(|part| part.host()).collect();
+            Array::Host(parts.concat())
+        }
+        #[cfg(feature = "gpu")]
+        Device::Gpu(gpu) => tensors::join(gpu, parts),
+        #[cfg(not(feature = "gpu"))]
+        Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
+    }
+}
+
+/// Writes `values` over those of `to` from the index `at` on.
+pub fn replace(device: &Device, to: &mut Array, at: usize, values: &Array) {
+    match device {
+        Device::Cpu => to.host_mut()[at..][..values.len()].copy_from_slice(values.host()),
+        #[cfg(feature = "gpu")]
+        Device::Gpu(gpu) => tensors::replace(gpu, to, at, values),
+        #[cfg(not(feature = "gpu"))]
+        Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
+    }
+}
+
+/// Adds `rate` times some of the `parameters` to the `gradient` of the same indices: the gradient of a decay
+/// of these weights.
+pub fn decay(
+    device: &Device,
+    parameters: &Array,
+    range: std::ops::Range<usize>,
+    rate: f32,
+    gradient: &mut Array,
+) {
+    match device {
+        Device::Cpu => {
+            let gradient = gradient.host_mut()[range.clone()].iter_mut();
+            let pairs = gradient.zip(&parameters.host()[range]);
+            pairs.for_each(|(gradient, parameter)| *gradient += rate * parameter);
+        }
+        #[cfg(feature = "gpu")]
+        Device::Gpu(gpu) => tensors::decay(gpu, parameters, range, rate, gradient),
+        #[cfg(not(feature = "gpu"))]
+        Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
+    }
+}

@@ -1,0 +1,339 @@
+//! Tells recorded motion from that of agents, and rewards agents for what it takes for recorded.
+
+use super::loss::{SUMS, TellApart};
+use super::replay::Replay;
+use super::{Amp, DiscriminatorLoss};
+use crate::container::{Section, SectionError};
+use crate::env::Demonstrations;
+use crate::gpu::{Array, Device};
+use crate::kernels::learn::{style_reward, style_windows};
+use crate::kernels::rng::{gaussian, index_below, random4};
+use crate::nn::layer::Activation;
+use crate::nn::network::{Network, NetworkConfig};
+use crate::nn::observation::ObservationSpec;
+use crate::nn::{Adam, Engine, EngineSize, Rows, RunningMeanStd, rows};
+use crate::rl::rollout::Rollout;
+use anyhow::Result;
+use std::sync::Arc;
+
+/// First random stream of what a gradient step sees: recorded windows, fresh ones, replayed ones.
+const STREAM: u32 = 0x4449_5343;
+
+/// A discriminator of windows of two moments, with what it needs to learn.
+pub struct Discriminator {
+    config: Amp,
+    device: Device,
+    demonstrations: Arc<Demonstrations>,
+    /// `[n][dim]`
+    recorded: Array,
+    network: Network,
+    engine: Engine,
+    parameters: Array,
+    adam: Adam,
+    gradient: Array,
+    normalizer: RunningMeanStd,
+    replay: Replay,
+    /// Windows of the present rollouts, `[samples][dim]`.
+    fresh: Array,
+    sums: Array,
+    /// Sum of the penalties' squared norms.
+    penalties: Array,
+    updates: u64,
+    seed: u32,
+}
+
+impl Discriminator {
+    /// A discriminator that is new to agents of `samples` samples an update.
+    ///
+    /// # Errors
+    /// There can be no such network, or not on this device.
+    pub fn new(
+        config: &Amp,
+        demonstrations: &Arc<Demonstrations>,
+        device: &Device,
+        samples: usize,
+        seed: u32,
+    ) -> Result<Self> {
+        let dim = demonstrations.dim;
+        let network = network(config, dim)?;
+        let parameters = network.span().len();
+        let size = EngineSize {
+            parameters,
+            extras: SUMS,
+            max_rows: samples,
+            minibatch: 2 * config.minibatch_size,
+        };
+        Ok(Discriminator {
+            recorded: Array::from_slice(device, &demonstrations.windows),
+            parameters: Array::from_slice(device, &init(&network, seed)),
+            engine: Engine::layerwise(device, vec![network.clone()], size)?,
+            adam: Adam::new(device, parameters),
+            gradient: Array::zeroed(device, parameters),
+            normalizer: RunningMeanStd::new(device, dim),
+            replay: Replay::new(device, config.replay_capacity, dim),
+            fresh: Array::zeroed(device, 0),
+            sums: Array::zeroed(device, SUMS),
+            penalties: Array::zeroed(device, 1),
+            updates: 0,
+            seed,
+            config: config.clone(),
+            device: device.clone(),
+            demonstrations: demonstrations.clone(),
+            network,
+        })
+    }
+
+    fn dim(&self) -> usize {
+        self.demonstrations.dim
+    }
+
+    /// Fills in the style reward of rollouts whose observations are raw.
+    pub fn reward(&mut self, rollouts: &mut [Rollout]) {
+        let windows: Vec<Array> = rollouts
+            .iter()
+            .map(|rollout| self.windows(rollout))
+            .collect();
+        for (rollout, windows) in rollouts.iter_mut().zip(&windows) {
+            let samples = rollout.samples();
+            let mut seen = windows.clone();
+            self.normalizer.normalize_in_place(&mut seen, samples);
+            let heads = self.config.heads;
+            let mut output = Array::zeroed(&self.device, samples * heads);
+            self.engine
+                .forward(0, &self.parameters, &seen, 0, samples, &mut output, 0);
+            let params = style_reward::Params {
+                samples: samples as u32,
+                heads: heads as u32,
+                hinge: u32::from(self.config.loss == DiscriminatorLoss::Hinge),
+            };
+            let reward = &mut rollout.style_reward;
+            match &self.device {
+                Device::Cpu => style_reward::twin(output.host(), reward.host_mut(), &params),
+                Device::Gpu(gpu) => {
+                    style_reward::launch(gpu, output.buffer(), reward.buffer(), &params);
+                }
+            }
+        }
+        self.fresh = rows::join(&self.device, &windows.iter().collect::<Vec<_>>());
+    }
+
+    /// The windows of a rollout, `[samples][dim]`.
+    fn windows(&self, rollout: &Rollout) -> Array {
+        let spec = &rollout.spec;
+        let params = style_windows::Params {
+            steps: rollout.steps as u32,
+            rows: spec.rows() as u32,
+            observation: spec.observation.dim() as u32,
+            style: spec.style as u32,
+            final_steps: spec.final_steps(rollout.steps) as u32,
+        };
+        let mut windows = Array::zeroed(&self.device, rollout.samples() * self.dim());
+        match &self.device {
+            Device::Cpu => style_windows::twin(
+                rollout.observation.host(),
+                rollout.next_observation.host(),
+                rollout.final_observation.host(),
+                rollout.termination.host(),
+                windows.host_mut(),
+                &params,
+            ),
+            Device::Gpu(gpu) => style_windows::launch(
+                gpu,
+                rollout.observation.buffer(),
+                rollout.next_observation.buffer(),
+                rollout.final_observation.buffer(),
+                rollout.termination.buffer(),
+                windows.buffer(),
+                &params,
+            ),
+        }
+        windows
+    }
+
+    /// Learns from the windows that [`Discriminator::reward`] saw last.
+    pub fn learn(&mut self) {
+        let dim = self.dim();
+        let fresh = self.fresh.len() / dim;
+        if self.updates == 0 {
+            self.normalize_by(fresh);
+        }
+        if self.replay.len() == 0 {
+            self.keep(fresh);
+        }
+        self.sums = Array::zeroed(&self.device, SUMS);
+        self.penalties = Array::zeroed(&self.device, 1);
+        for step in 0..self.config.steps {
+            self.step(step);
+        }
+        if self.updates > 0 {
+            self.normalize_by(fresh);
+            self.keep(fresh);
+        }
+        self.updates += 1;
+    }
+
+    /// Numbers below `below` for a stream of the present update.
+    fn draw(&self, stream: u32, count: usize, of: impl Fn(u32) -> u32) -> Vec<u32> {
+        let numbers = 0..count as u32;
+        let bits = |number| random4(self.seed, number, self.updates as u32, STREAM + stream)[0];
+        numbers.map(|number| of(bits(number))).collect()
+    }
+
+    /// Lets windows of both sides into the normaliser.
+    fn normalize_by(&mut self, fresh: usize) {
+        let count = fresh.min(self.config.replay_per_update);
+        let recorded = self.draw(0, count, |bits| self.demonstrations.draw(bits));
+        let agents = self.draw(1, count, |bits| index_below(bits, fresh as u32));
+        let dim = self.dim();
+        for (from, numbers) in [(&self.recorded, recorded), (&self.fresh, agents)] {
+            let picked = rows::pick(&self.device, from, dim, &numbers);
+            self.normalizer.update(&picked, count);
+        }
+    }
+
+    /// Puts some of the fresh windows into the replay.
+    fn keep(&mut self, fresh: usize) {
+        let count = self.config.replay_per_update.min(fresh);
+        let count = count.min(self.config.replay_capacity);
+        let kept = self.draw(2, count, |bits| index_below(bits, fresh as u32));
+        let kept = rows::pick(&self.device, &self.fresh, self.dim(), &kept);
+        self.replay.push(&kept);
+    }
+
+    /// One gradient step.
+    fn step(&mut self, step: usize) {
+        let (count, dim) = (self.config.minibatch_size, self.dim());
+        let stream = 3 + 3 * step as u32;
+        let (fresh, replayed) = (self.fresh.len() / dim, self.replay.len());
+        let half = count / 2;
+        let numbers = [
+            self.draw(stream, count, |bits| self.demonstrations.draw(bits)),
+            self.draw(stream + 1, count - half, |bits| {
+                index_below(bits, fresh as u32)
+            }),
+            self.draw(stream + 2, half, |bits| index_below(bits, replayed as u32)),
+        ];
+        let sources = [&self.recorded, &self.fresh, self.replay.windows()];
+        let parts: Vec<Array> = sources
+            .into_iter()
+            .zip(&numbers)
+            .filter(|(_, numbers)| !numbers.is_empty())
+            .map(|(from, numbers)| rows::pick(&self.device, from, dim, numbers))
+            .collect();
+        let mut windows = rows::join(&self.device, &parts.iter().collect::<Vec<_>>());
+        self.normalizer.normalize_in_place(&mut windows, 2 * count);
+        let labels = [vec![1.0; count], vec![0.0; count]].concat();
+        let samples = rows::labelled(&self.device, &windows, dim, &labels);
+        let objective = TellApart {
+            loss: self.config.loss,
+            inv_count: 0.5 / count as f32,
+        };
+        self.engine.gradient(
+            &self.parameters,
+            &samples,
+            dim + 1,
+            Rows::Range(0..2 * count),
+            &objective,
+            &mut self.gradient,
+            &mut self.sums,
+        );
+        self.engine.add_gradient_penalty(
+            0,
+            &self.parameters,
+            &samples,
+            dim + 1,
+            0..count,
+            self.config.gradient_penalty,
+            &mut self.gradient,
+            &mut self.penalties,
+        );
+        let last = self.network.layers().last().map(|last| last.weights());
+        rows::decay(
+            &self.device,
+            &self.parameters,
+            last.unwrap_or_default(),
+            self.config.logit_decay,
+            &mut self.gradient,
+        );
+        let (rate, max) = (self.config.learning_rate, self.config.max_grad_norm);
+        self.adam.step(&mut self.parameters, &self.gradient, rate, max);
+    }
+
+    /// What the last update lost, and how often it was right, by their names in `metrics.jsonl`.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn losses(&self) -> Result<Vec<(&'static str, f64)>> {
+        let sums = self.sums.read(&self.device)?;
+        let penalties = self.penalties.read(&self.device)?[0];
+        let of = |i: usize| f64::from(sums[i]);
+        let recorded = of(1).max(1.0);
+        Ok(vec![
+            ("discriminator_loss", of(0) / (of(1) + of(3)).max(1.0)),
+            ("discriminator_penalty", f64::from(penalties) / recorded),
+            ("recorded_accuracy", of(2) / recorded),
+            ("agent_accuracy", of(4) / of(3).max(1.0)),
+        ])
+    }
+
+    /// Saves all that it needs to go on as if it had never stopped.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn save(&self, to: &mut Section) -> Result<()> {
+        to.put("discriminator.updates", self.updates);
+        let parameters = self.parameters.read(&self.device)?;
+        to.put_array("discriminator.parameters", &parameters);
+        self.adam.save(to)?;
+        self.normalizer.save(to)?;
+        self.replay.save(to)
+    }
+
+    /// Puts a saved state back.
+    ///
+    /// # Errors
+    /// It is of another discriminator.
+    pub fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
+        self.updates = from.get("discriminator.updates")?;
+        let parameters = from.take_finite("discriminator.parameters", self.parameters.len())?;
+        self.parameters = Array::from_slice(&self.device, &parameters);
+        self.adam.load(from)?;
+        self.normalizer = RunningMeanStd::load(from, self.dim())?.on(&self.device);
+        self.replay.load(from)
+    }
+}
+
+/// The network of a discriminator of windows of `dim` numbers.
+///
+/// # Errors
+/// There can be no such network.
+pub fn network(config: &Amp, dim: usize) -> Result<Network, crate::nn::NetworkError> {
+    let hidden = NetworkConfig {
+        convolutions: Vec::new(),
+        encoder_hidden: Vec::new(),
+        hidden: config.hidden.clone(),
+        activation: Activation::Relu,
+    };
+    let window = ObservationSpec {
+        vector: dim,
+        grid: None,
+    };
+    Network::new(&hidden, &window, config.heads, 0)
+}
+
+/// Gaussian weights that keep the variance through ReLUs, and zero biases.
+fn init(network: &Network, seed: u32) -> Vec<f32> {
+    const STREAM: u32 = 0x4449_4e49;
+    let mut flat = vec![0.0; network.span().end];
+    for params in network.layers() {
+        let gain = match params.layer.activation() {
+            Activation::Relu => 2f32.sqrt(),
+            Activation::Tanh | Activation::Identity => 1.0,
+        };
+        let deviation = gain / (params.layer.patch() as f32).sqrt();
+        for at in params.weights() {
+            flat[at] = deviation * gaussian(random4(seed, at as u32, 0, STREAM));
+        }
+    }
+    flat
+}

@@ -1,0 +1,98 @@
+//! PPO whose agents are rewarded for their style.
+
+use super::{Amp, Discriminator};
+use crate::container::{Section, SectionError};
+use crate::env::{Demonstrations, EnvBatch};
+use crate::gpu::Device;
+use crate::nn::Policy;
+use crate::rl::gae::RewardSource;
+use crate::rl::ppo::{Ppo, PpoLearner};
+use crate::rl::rollout::Rollout;
+use crate::rl::{Algorithm, Iteration};
+use anyhow::{Result, bail};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// PPO with a discriminator: one more reward before the advantages, one more network that learns.
+pub struct AmpLearner {
+    ppo: PpoLearner,
+    discriminator: Discriminator,
+    device: Device,
+}
+
+impl AmpLearner {
+    /// A learner for the environments of a training, whose agents are to move as in the demonstrations.
+    ///
+    /// # Errors
+    /// A network does not fit the observation, or the device.
+    pub fn new(
+        ppo: &Ppo,
+        amp: &Amp,
+        demonstrations: &Arc<Demonstrations>,
+        envs: &EnvBatch,
+        device: &Device,
+        seed: u32,
+    ) -> Result<Self> {
+        let rewards = [
+            (RewardSource::Task, amp.task_weight),
+            (RewardSource::Style, amp.style_weight),
+        ];
+        let rewards: Vec<_> = rewards.into_iter().filter(|(_, weight)| *weight > 0.0).collect();
+        let samples = ppo.rollout_length * envs.spec().rows();
+        Ok(AmpLearner {
+            ppo: PpoLearner::with_rewards(ppo, envs, device, seed, &rewards)?,
+            discriminator: Discriminator::new(amp, demonstrations, device, samples, seed)?,
+            device: device.clone(),
+        })
+    }
+
+    /// Mean style reward of a step.
+    fn style(&self) -> Result<f64> {
+        let mut sum = 0.0;
+        for rollout in &self.ppo.rollouts {
+            let reward = rollout.style_reward.read(&self.device)?;
+            sum += reward.iter().map(|&reward| f64::from(reward)).sum::<f64>();
+        }
+        let samples: usize = self.ppo.rollouts.iter().map(Rollout::samples).sum();
+        Ok(sum / samples.max(1) as f64)
+    }
+}
+
+impl Algorithm for AmpLearner {
+    fn iterate(&mut self, envs: &mut EnvBatch, steps: u64) -> Result<Iteration> {
+        let begin = Instant::now();
+        let [_, env_s] = self.ppo.collect(envs)?;
+        self.discriminator.reward(&mut self.ppo.rollouts);
+        self.ppo.estimate()?;
+        let policy_s = begin.elapsed().as_secs_f64() - env_s;
+        self.ppo.learn();
+        self.discriminator.learn();
+        let mut iteration = self.ppo.conclude(envs, steps, begin, [policy_s, env_s])?;
+        iteration.losses.push(("style_reward", self.style()?));
+        iteration.losses.extend(self.discriminator.losses()?);
+        match iteration.losses.iter().find(|(_, value)| !value.is_finite()) {
+            None => Ok(iteration),
+            Some((name, value)) => bail!(
+                "learning diverged: the {} is {value}; checkpoints are from before it, if one was due. Try a \
+                 lower amp.learning_rate",
+                name.replace('_', " ")
+            ),
+        }
+    }
+
+    fn policy(&self) -> Result<Policy> {
+        self.ppo.policy()
+    }
+
+    fn save(&self, to: &mut Section) -> Result<()> {
+        let mut own = Section::default();
+        self.discriminator.save(&mut own)?;
+        to.put_section("discriminator", own);
+        self.ppo.save(to)
+    }
+
+    fn load(&mut self, from: &mut Section, policy: &Policy) -> Result<(), SectionError> {
+        self.discriminator.load(&mut from.take_section("discriminator"))?;
+        self.ppo.load(from, policy)
+    }
+}
