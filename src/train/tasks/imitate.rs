@@ -4,7 +4,6 @@ use super::motions;
 use super::presets::fast;
 use crate::env::humanoid::imitate::ImitateTask;
 use crate::env::humanoid::imitate::evaluate::{ImitateReport, evaluate};
-use crate::env::humanoid::recorded::demonstrations;
 use crate::env::humanoid::task::{CpuHumanoidEnv, EpisodeRules, open, play, spec};
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
@@ -16,11 +15,11 @@ use crate::physics::motion_clip::MotionClip;
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
 use crate::rl::Algorithm;
-use crate::rl::amp::{Amp, AmpLearner};
+use crate::rl::amp::Amp;
 use crate::rl::ppo::Ppo;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
-use crate::train::task::{Loaded, Task, TaskEntry, Unsupported};
+use crate::train::task::{Loaded, Task, TaskEntry};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
@@ -143,17 +142,7 @@ impl Task for ImitateTraining {
         envs: &EnvBatch,
         device: &Device,
     ) -> Result<Box<dyn Algorithm>> {
-        let demonstrations = Arc::new(demonstrations(&self.library));
-        let amp = config.amp.clone().unwrap_or_default();
-        let learner = AmpLearner::new(
-            &config.ppo,
-            &amp,
-            &demonstrations,
-            envs,
-            device,
-            config.seed,
-        )?;
-        Ok(Box::new(learner))
+        motions::learner(config, &self.library, envs, device)
     }
 
     fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {
@@ -183,16 +172,7 @@ impl Task for ImitateTraining {
     }
 
     fn report(&self, policy: &Policy, wanted: &EvalOptions) -> Result<EvalReport> {
-        let beside = [
-            ("--baseline", wanted.baseline),
-            ("--planner", wanted.planner > 0),
-            ("--motion-quality", wanted.motion_quality),
-        ];
-        if let Some((option, _)) = beside.into_iter().find(|(_, wanted)| *wanted) {
-            let why =
-                format!("{option} is for motion matching: a simulated body has no such thing");
-            return Err(Unsupported(why).into());
-        }
+        motions::refuse_matching(wanted)?;
         let found = self.rate(policy, wanted.episodes);
         let evaluation = self.evaluate(policy, wanted.episodes)?;
         Ok(EvalReport {

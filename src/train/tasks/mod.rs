@@ -4,6 +4,7 @@ pub mod imitate;
 mod motions;
 pub mod obstacles;
 pub mod plane;
+pub mod punch;
 mod presets;
 pub mod stand;
 
@@ -12,11 +13,13 @@ use super::run_dir::RunDir;
 use super::task::TaskEntry;
 
 /// Every task there is.
-pub static REGISTRY: [TaskEntry; 4] = [
+pub static REGISTRY: [TaskEntry; 6] = [
     plane::ENTRY,
     obstacles::ENTRY,
     stand::ENTRY,
     imitate::ENTRY,
+    punch::PUNCH,
+    punch::JOYSTICK,
 ];
 
 /// A task by name.

@@ -1,5 +1,6 @@
 //! The task `stand`: a simulated body stays upright for ten seconds while it is pushed.
 
+use super::motions;
 use super::presets::fast;
 use crate::env::humanoid::stand::evaluate::{StandReport, evaluate, record};
 use crate::env::humanoid::stand::{Stand, StandTask};
@@ -15,7 +16,7 @@ use crate::physics::scenes;
 use crate::rl::ppo::Ppo;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
-use crate::train::task::{Loaded, Task, TaskEntry, Unsupported};
+use crate::train::task::{Loaded, Task, TaskEntry};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
@@ -145,16 +146,7 @@ impl Task for StandTraining {
     }
 
     fn report(&self, policy: &Policy, wanted: &EvalOptions) -> Result<EvalReport> {
-        let beside = [
-            ("--baseline", wanted.baseline),
-            ("--planner", wanted.planner > 0),
-            ("--motion-quality", wanted.motion_quality),
-        ];
-        if let Some((option, _)) = beside.into_iter().find(|(_, wanted)| *wanted) {
-            let why =
-                format!("{option} is for motion matching: a simulated body has no such thing");
-            return Err(Unsupported(why).into());
-        }
+        motions::refuse_matching(wanted)?;
         let found = self.evaluate(policy, wanted.episodes)?;
         Ok(EvalReport {
             text: format!(

@@ -94,6 +94,12 @@ impl SimulatedWorld {
         }
     }
 
+    /// Mean forces of the last action of the first on the second of every pair, N, in a world of so many
+    /// bodies.
+    pub fn pair_forces(&self, bodies: usize) -> &[Vec3] {
+        &self.forces[bodies..]
+    }
+
     /// Adds the forces and counts of a step.
     fn count(&mut self, simulator: &Simulator, force_pairs: &[u32]) {
         let model = &simulator.model;

@@ -43,7 +43,8 @@ pub struct GpuSimulatorBatch {
     /// Contact ids and constraint forces of the last step, for the solver to start from,
     /// `[warm_start_dim][envs]`: see [`warm_start_dim`].
     pub warm_start: Buffer<u32>,
-    forces: Buffer<f32>,
+    /// Mean contact forces of the last action, `[(bodies + pairs) * 3][envs]`, N.
+    pub forces: Buffer<f32>,
     counters: Buffer<u32>,
     /// All zero: no world is to be reset unless it has diverged.
     none: Buffer<u32>,

@@ -1,0 +1,200 @@
+//! The tasks `punch` and `joystick`: a simulated body goes up to a box and topples it, in the style of
+//! recordings.
+
+use super::imitate::ppo;
+use super::motions;
+use crate::env::humanoid::punch::evaluate::{PunchReport, evaluate};
+use crate::env::humanoid::punch::{Punch, PunchTask};
+use crate::env::humanoid::task::{CpuHumanoidEnv, open, play, spec};
+use crate::env::{EnvBatch, EnvSpec};
+use crate::gpu::Device;
+use crate::kernels::humanoid::punch_observe;
+use crate::nn::Policy;
+use crate::physics::model::Model;
+use crate::physics::motion_clip::MotionClip;
+use crate::physics::motion_library::MotionLibrary;
+use crate::physics::scenes;
+use crate::rl::Algorithm;
+use crate::rl::amp::Amp;
+use crate::rl::ppo::Ppo;
+use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
+use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
+use crate::train::task::{Loaded, Task, TaskEntry};
+#[cfg(feature = "report")]
+use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
+use anyhow::Result;
+use std::sync::Arc;
+
+/// The task `punch` in the registry.
+pub const PUNCH: TaskEntry = TaskEntry {
+    name: "punch",
+    about: "Let a simulated body run up to a box and topple it",
+    preset,
+    spec: check,
+    load,
+    ablations: &[],
+};
+
+/// The task `joystick` in the registry.
+pub const JOYSTICK: TaskEntry = TaskEntry {
+    name: "joystick",
+    about: "The same, while it faces any way that is wanted",
+    ..PUNCH
+};
+
+/// Seed of the evaluation episodes: the same for every policy.
+const EPISODES_SEED: u32 = 0x4556_414c;
+
+fn preset(_: Preset) -> TaskPreset {
+    TaskPreset {
+        settings: table(&Punch::default()),
+        ppo: Ppo {
+            // With less, most falls are slow tips out of the guard.
+            gamma: 0.99,
+            ..ppo()
+        },
+        amp: Some(Amp {
+            style_weight: 0.5,
+            task_weight: 0.5,
+            ..Amp::default()
+        }),
+        steps: 10_000_000,
+    }
+}
+
+fn is_joystick(config: &Config) -> bool {
+    config.task.name == JOYSTICK.name
+}
+
+fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
+    let punch: Punch = settings(&config.task.settings)?;
+    punch.check().map_err(ConfigError::Settings)?;
+    let added = punch_observe::dim(is_joystick(config));
+    Ok(spec(&scenes::humanoid_and_box(), added, config.ppo.envs))
+}
+
+fn load(config: &Config) -> Result<Loaded> {
+    let model = Arc::new(scenes::humanoid());
+    let (library, notes) = motions::load(config.data.as_deref(), &model)?;
+    let task = PunchTraining {
+        punch: settings(&config.task.settings)?,
+        joystick: is_joystick(config),
+        library: Arc::new(library),
+    };
+    Ok(Loaded {
+        task: Box::new(task),
+        notes,
+    })
+}
+
+struct PunchTraining {
+    punch: Punch,
+    joystick: bool,
+    library: Arc<MotionLibrary>,
+}
+
+impl PunchTraining {
+    fn task(&self, punch: &Punch, seed: u32) -> Arc<PunchTask> {
+        Arc::new(PunchTask::new(punch, self.joystick, &self.library, seed))
+    }
+
+    fn rate(&self, policy: &Policy, episodes: usize) -> PunchReport {
+        let mean = |observation: &[f32]| policy.mean(observation);
+        let task = self.task(&self.punch.evaluated(), EPISODES_SEED);
+        evaluate(task, &mean, episodes, EPISODES_SEED)
+    }
+}
+
+impl Task for PunchTraining {
+    fn settings(&self) -> toml::Table {
+        table(&self.punch)
+    }
+
+    fn with_choices(&self, config: &Config) -> Result<Box<dyn Task>, ConfigError> {
+        Ok(Box::new(PunchTraining {
+            punch: settings(&config.task.settings)?,
+            joystick: self.joystick,
+            library: self.library.clone(),
+        }))
+    }
+
+    fn fingerprint(&self) -> u32 {
+        motions::fingerprint(&self.library)
+    }
+
+    fn describe(&self) -> String {
+        motions::describe(&self.library)
+    }
+
+    fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
+        let task = self.task(&self.punch, seed);
+        EnvBatch::open(device, envs, None, |part| {
+            open(device, task.clone(), part, seed)
+        })
+    }
+
+    fn learner(
+        &self,
+        config: &Config,
+        envs: &EnvBatch,
+        device: &Device,
+    ) -> Result<Box<dyn Algorithm>> {
+        motions::learner(config, &self.library, envs, device)
+    }
+
+    fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {
+        let found = self.rate(policy, episodes);
+        let measures = [
+            ("episode_length_mean_s", found.mean_episode_s),
+            ("survival", found.survival),
+            ("fist_rate", found.fist_rate),
+            ("time_to_hit_mean_s", found.time_to_hit_mean_s),
+            ("facing_error_deg", found.facing_error_deg),
+        ];
+        Ok(Evaluation {
+            episodes: found.episodes,
+            success: found.hit_rate,
+            measures: measures.into_iter().collect(),
+        })
+    }
+
+    fn sentence(&self, found: &Evaluation) -> String {
+        format!(
+            "{:.1} % of {} targets toppled, {:.1} s on average; {:.1} % by a fist, {:.1} % of the episodes without a \
+             fall",
+            100.0 * found.success,
+            found.episodes,
+            found.measure("time_to_hit_mean_s"),
+            100.0 * found.measure("fist_rate"),
+            100.0 * found.measure("survival"),
+        )
+    }
+
+    fn report(&self, policy: &Policy, wanted: &EvalOptions) -> Result<EvalReport> {
+        motions::refuse_matching(wanted)?;
+        let found = self.rate(policy, wanted.episodes);
+        let evaluation = self.evaluate(policy, wanted.episodes)?;
+        Ok(EvalReport {
+            text: format!(
+                "{}\nfacing error {:.0} degrees while the target is far\n",
+                self.sentence(&evaluation),
+                found.facing_error_deg
+            ),
+            json: serde_json::to_value(found)?,
+        })
+    }
+
+    #[cfg(feature = "report")]
+    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
+        figures::draw_curve(run, rows)
+    }
+
+    fn motion(&self, policy: &Policy, episode: u32) -> Option<(Arc<Model>, MotionClip)> {
+        let mean = |observation: &[f32]| policy.mean(observation);
+        let seed = EPISODES_SEED.wrapping_add(episode);
+        let task = self.task(&self.punch.evaluated(), seed);
+        let mut envs = CpuHumanoidEnv::unstaggered(task, 0..1, seed);
+        let motion = play::record(&mut envs, &mean, "punch");
+        Some((Arc::new(scenes::humanoid_and_box()), motion))
+    }
+}
