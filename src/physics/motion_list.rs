@@ -41,8 +41,9 @@ impl MotionList {
         }
         match path.extension() {
             Some(end) if end.eq_ignore_ascii_case("toml") => {
-                let beside = path.parent().unwrap_or(Path::new(""));
-                file::read(path, folder.unwrap_or(beside))
+                // The parent of a bare name is empty, which is no folder.
+                let parent = path.parent().filter(|parent| *parent != Path::new(""));
+                file::read(path, folder.or(parent).unwrap_or(Path::new(".")))
             }
             _ => Ok(MotionList {
                 clips: vec![ListedClip::of(path.to_path_buf())],

@@ -141,7 +141,7 @@ fn feet_are_brought_to_the_ground_where_that_is_wanted() {
         ..MotionListOptions::default()
     };
     let listed = load(&list).expect("ground = true");
-    let chosen = load_with(&folder.0.path(), &options).expect("the option");
+    let chosen = load_with(folder.0.path(), &options).expect("the option");
     let grounded: Vec<bool> = chosen.report.iter().map(|clip| clip.grounded).collect();
     assert_eq!(grounded, [true, false]);
     for clip in [&listed.report[0], &chosen.report[0]] {

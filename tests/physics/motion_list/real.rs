@@ -62,3 +62,28 @@ fn the_lists_of_the_examples_load() {
         }
     }
 }
+
+#[test]
+fn recordings_on_a_sloping_floor_are_refused_or_grounded() {
+    let Some(folder) = recordings("cmu/mb31") else {
+        return;
+    };
+    let model = Arc::new(humanoid());
+    let list = MotionList::read(&folder, None).expect("a folder");
+    let mut options = MotionListOptions::default();
+    let error = list
+        .load(&model, &options)
+        .expect_err("refused")
+        .to_string();
+    assert!(
+        error.contains("07_05.bvh") && error.contains("0.11 m"),
+        "{error}"
+    );
+    options.ground = true;
+    let loaded = list.load(&model, &options).expect("grounded");
+    let grounded = loaded.report.iter().filter(|clip| clip.grounded);
+    let grounded: Vec<_> = grounded.collect();
+    assert_eq!(grounded.len(), 1);
+    assert_eq!(grounded[0].name, "07_05");
+    assert!(grounded[0].floor[1] < 0.02, "{:?}", grounded[0]);
+}
