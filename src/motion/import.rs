@@ -53,11 +53,7 @@ pub fn import(path: &Path, options: &ImportOptions) -> MotionResult<ImportedMoti
     let recordings: Vec<Recording> = recordings.into_iter().collect::<MotionResult<_>>()?;
     check_same_tree(&files, &recordings)?;
 
-    let skeleton = &recordings[0].skeleton;
-    let roles = match &options.roles {
-        Some(file) => Roles::read(file, skeleton)?,
-        None => Roles::find(skeleton).map_err(|error| error.within(&files[0]))?,
-    };
+    let roles = roles_of(&files[0], &recordings[0].skeleton, options)?;
     let prepared: Vec<MotionResult<Prepared>> = files
         .par_iter()
         .zip(recordings)
@@ -68,6 +64,45 @@ pub fn import(path: &Path, options: &ImportOptions) -> MotionResult<ImportedMoti
         .collect();
     let prepared: Vec<Prepared> = prepared.into_iter().collect::<MotionResult<_>>()?;
     collect(path, prepared, roles, options)
+}
+
+/// One recording, prepared by itself.
+#[derive(Clone, Debug)]
+pub struct ImportedClip {
+    /// The recording without its T-poses.
+    pub clip: Clip,
+    /// Joints of the feature, by number.
+    pub roles: Roles,
+    /// T-pose frames dropped at both ends, in frames of the file.
+    pub t_pose_frames: usize,
+    /// One sentence each: T-poses dropped without a manifest, an unusual unit.
+    pub notes: Vec<String>,
+}
+
+/// Imports one BVH file as [`import`] does, whatever its length, and without a mirrored copy.
+///
+/// # Errors
+/// See [`MotionError`].
+pub fn import_file(file: &Path, options: &ImportOptions) -> MotionResult<ImportedClip> {
+    check_unit(options)?;
+    let listing = Listing::beside(file)?;
+    let recording = bvh::read(file)?;
+    let roles = roles_of(file, &recording.skeleton, options)?;
+    let prepared = prepare(file, recording, listing.entry(file), &roles, options)
+        .map_err(|error| error.within(file))?;
+    Ok(ImportedClip {
+        notes: notes(std::slice::from_ref(&prepared)),
+        t_pose_frames: prepared.t_pose_frames,
+        clip: prepared.clip,
+        roles,
+    })
+}
+
+fn roles_of(file: &Path, skeleton: &Skeleton, options: &ImportOptions) -> MotionResult<Roles> {
+    match &options.roles {
+        Some(roles) => Roles::read(roles, skeleton),
+        None => Roles::find(skeleton).map_err(|error| error.within(file)),
+    }
 }
 
 fn check_unit(options: &ImportOptions) -> MotionResult<()> {
@@ -186,7 +221,9 @@ fn difference(a: &Skeleton, b: &Skeleton) -> String {
 /// One file, ready, and what is to be said about it.
 struct Prepared {
     clip: Clip,
-    /// T-pose frames that were detected rather than listed, in frames of the file.
+    /// T-pose frames that were dropped, in frames of the file.
+    t_pose_frames: usize,
+    /// Those of them that were detected rather than listed.
     detected: usize,
     /// The unit, if it is none of the usual ones and nobody gave it.
     odd_unit: Option<f32>,
@@ -219,17 +256,14 @@ fn prepare(
     }
     Ok(Prepared {
         clip,
+        t_pose_frames: head + tail,
         detected: entry.map_or(head + tail, |_| 0),
         odd_unit: (given.is_none() && !units::COMMON.contains(&unit)).then_some(unit),
     })
 }
 
-fn collect(
-    path: &Path,
-    prepared: Vec<Prepared>,
-    roles: Roles,
-    options: &ImportOptions,
-) -> MotionResult<ImportedMotion> {
+/// What is to be said about the recordings.
+fn notes(prepared: &[Prepared]) -> Vec<String> {
     let mut notes = Vec::new();
     let detected = prepared.iter().filter(|p| p.detected > 0);
     let listed: Vec<String> = detected
@@ -238,12 +272,22 @@ fn collect(
     if !listed.is_empty() {
         notes.push(format!("T-pose frames dropped from {}", listed.join(", ")));
     }
-    for p in &prepared {
+    for p in prepared {
         if let Some(unit) = p.odd_unit {
             let name = &p.clip.name;
             notes.push(format!("no usual unit fits {name}: scaled by {unit} for legs of 0.85 m; give its unit if that is wrong"));
         }
     }
+    notes
+}
+
+fn collect(
+    path: &Path,
+    prepared: Vec<Prepared>,
+    roles: Roles,
+    options: &ImportOptions,
+) -> MotionResult<ImportedMotion> {
+    let mut notes = notes(&prepared);
     let clips = prepared.into_iter().map(|p| p.clip);
     let (mut clips, short): (Vec<Clip>, Vec<Clip>) = clips.partition(|c| c.frames() >= MIN_FRAMES);
     let short_frames: usize = short.iter().map(Clip::frames).sum();

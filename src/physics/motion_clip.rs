@@ -54,13 +54,19 @@ impl MotionClip {
         let before = index as usize;
         let after = (before + 1).min(last);
         let share = index - before as f32;
-        let mut q = mixed(self.q(before), self.q(after), share);
-        for first in turns(model) {
-            let [a, b] = [before, after].map(|frame| quaternion(&self.q(frame)[first..]));
-            store(&mut q[first..], a.slerp(b, share));
-        }
+        let q = between(model, self.q(before), self.q(after), share);
         (q, mixed(self.v(before), self.v(after), share))
     }
+}
+
+/// Positions a share of the way from some to others.
+pub fn between(model: &Model, from: &[f32], to: &[f32], share: f32) -> Vec<f32> {
+    let mut q = mixed(from, to, share);
+    for first in turns(model) {
+        let [a, b] = [from, to].map(|q| quaternion(&q[first..]));
+        store(&mut q[first..], a.slerp(b, share));
+    }
+    q
 }
 
 fn row(rows: &[f32], count: usize, row: usize) -> &[f32] {

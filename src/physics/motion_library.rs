@@ -49,6 +49,14 @@ pub enum MotionLibraryError {
         /// Number of motions in the library.
         motions: usize,
     },
+    /// More or fewer kinds than motions.
+    #[error("{kinds} kinds were given for {motions} motions; give one for each")]
+    Kinds {
+        /// Number of kinds given.
+        kinds: usize,
+        /// Number of motions in the library.
+        motions: usize,
+    },
     /// A negative weight, or weights whose sum is not positive and finite.
     #[error(
         "the weight of '{motion}' is {weight}, that of all motions {total}: give weights of zero or more, not all zero"
@@ -68,6 +76,8 @@ pub enum MotionLibraryError {
 pub struct MotionLibrary {
     model: Arc<Model>,
     motions: Vec<MotionClip>,
+    /// What kind of motion each is, empty where nobody said.
+    kinds: Vec<String>,
     /// Shares of the weights of each motion and all before it.
     shares: Vec<f32>,
     /// One sentence each: clips left out, T-poses dropped, unusual units.
@@ -121,6 +131,7 @@ impl MotionLibrary {
         let weights: Vec<f32> = motions.iter().map(MotionClip::seconds).collect();
         let library = MotionLibrary {
             model: model.clone(),
+            kinds: vec![String::new(); motions.len()],
             motions,
             shares: Vec::new(),
             notes: Vec::new(),
@@ -161,6 +172,21 @@ impl MotionLibrary {
         Ok(self)
     }
 
+    /// Sets what kind of motion each is, like "boxing".
+    ///
+    /// # Errors
+    /// Not one kind for each motion.
+    pub fn with_kinds(mut self, kinds: Vec<String>) -> Result<MotionLibrary> {
+        if kinds.len() != self.motions.len() {
+            return Err(MotionLibraryError::Kinds {
+                kinds: kinds.len(),
+                motions: self.motions.len(),
+            });
+        }
+        self.kinds = kinds;
+        Ok(self)
+    }
+
     /// The motions, in the order of the indices that [`sample`](Self::sample) draws.
     pub fn motions(&self) -> &[MotionClip] {
         &self.motions
@@ -171,9 +197,14 @@ impl MotionLibrary {
         &self.model
     }
 
-    /// The chance of a motion to be drawn.
+    /// The kind of a motion, empty if it has none.
+    pub fn kind(&self, motion: usize) -> &str {
+        &self.kinds[motion]
+    }
+
+    /// How likely a motion is to be drawn, from 0 to 1.
     pub fn share(&self, motion: usize) -> f32 {
-        let before = motion.checked_sub(1).map_or(0.0, |last| self.shares[last]);
+        let before = motion.checked_sub(1).map_or(0.0, |one| self.shares[one]);
         self.shares[motion] - before
     }
 

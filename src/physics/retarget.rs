@@ -12,6 +12,7 @@ mod limb;
 mod recorded_frame;
 mod sole;
 
+use super::footing::Footing;
 use super::model::Model;
 use super::motion_clip::MotionClip;
 use crate::motion::clip::Clip;
@@ -21,6 +22,7 @@ use crate::motion::units;
 use anatomy::Anatomy;
 pub use error::{Result, RetargetError};
 use glam::{Quat, Vec3};
+pub(super) use humanoid_joints::joint;
 use humanoid_joints::{HumanoidJoints, TargetPose};
 use limb::Hinge;
 use recorded_frame::RecordedFrame;
@@ -56,8 +58,15 @@ pub fn retarget(clip: &Clip, roles: &Roles, model: &Model) -> Result<MotionClip>
         figure.hips = (figure.hips - start) * scale;
         q.extend(joints.positions(&figure));
     }
-    joints.stand(&mut q);
+    footing(model)?.stand(&mut q);
     Ok(MotionClip::new(&clip.name, model, clip.rate, q))
+}
+
+/// What a humanoid stands on.
+pub(super) fn footing(model: &Model) -> Result<Footing<'_>> {
+    Footing::of(model).ok_or_else(|| RetargetError::Feet {
+        model: model.name.clone(),
+    })
 }
 
 fn frame(clip: &Clip, index: usize) -> RecordedFrame {

@@ -9,5 +9,6 @@ mod laws;
 #[path = "../support/mocap.rs"]
 mod mocap;
 mod model;
+mod motion_list;
 mod retarget;
 mod statistics;

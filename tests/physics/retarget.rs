@@ -22,35 +22,35 @@ const UPRIGHT: Quat = Quat::from_xyzw(0.5, 0.5, 0.5, 0.5);
 const LEG: f32 = 0.831416;
 
 /// A walk that nobody recorded.
-fn performed() -> (Clip, Roles) {
+pub(crate) fn performed() -> (Clip, Roles) {
     let (mut clips, roles) = footwork::motion::synthetic::perform(3, 1.0);
     (clips.swap_remove(0), roles)
 }
 
 /// The poses of a humanoid's bodies.
-struct Bodies<'a> {
+pub(crate) struct Bodies<'a> {
     model: &'a Model,
     poses: Vec<Pose>,
 }
 
 impl Bodies<'_> {
-    fn of<'a>(model: &'a Model, q: &[f32]) -> Bodies<'a> {
+    pub(crate) fn of<'a>(model: &'a Model, q: &[f32]) -> Bodies<'a> {
         let mut poses = vec![Pose::default(); model.bodies.len()];
         let mut axes = vec![Spatial::ZERO; model.nv()];
         kinematics(model, q, &mut poses, &mut axes);
         Bodies { model, poses }
     }
 
-    fn pose(&self, name: &str) -> Pose {
+    pub(crate) fn pose(&self, name: &str) -> Pose {
         self.poses[self.model.body(name).expect("a humanoid's body")]
     }
 
-    fn position(&self, name: &str) -> Vec3 {
+    pub(crate) fn position(&self, name: &str) -> Vec3 {
         self.pose(name).position
     }
 
     /// Height of the lowest corner of the feet, m.
-    fn lowest(&self) -> f32 {
+    pub(crate) fn lowest(&self) -> f32 {
         let feet = self
             .model
             .geoms

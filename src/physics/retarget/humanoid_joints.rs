@@ -3,14 +3,9 @@
 use super::error::{Result, RetargetError};
 use super::limb::Bend;
 use crate::physics::drive::rotation_vector;
-use crate::physics::kinematics::{kinematics, store};
-use crate::physics::model::{Geom, Joint, JointKind, Model};
-use crate::physics::pose::Pose;
-use crate::physics::spatial::Spatial;
+use crate::physics::kinematics::store;
+use crate::physics::model::{Joint, JointKind, Model};
 use glam::{Mat3, Quat, Vec3};
-
-/// Share of the frames whose feet may be below the ground.
-const BELOW: f32 = 0.01;
 
 /// What a frame asks of the humanoid, in the world; in pairs, the right one is first.
 pub struct TargetPose {
@@ -50,7 +45,7 @@ impl<'a> HumanoidJoints<'a> {
                 hinge: joint(lower, JointKind::Hinge)?,
             })
         };
-        let joints = HumanoidJoints {
+        Ok(HumanoidJoints {
             model,
             pelvis: joint("pelvis", JointKind::Free)?,
             torso: joint("torso", JointKind::Ball)?,
@@ -67,12 +62,7 @@ impl<'a> HumanoidJoints<'a> {
                 joint("right_foot", JointKind::Ball)?,
                 joint("left_foot", JointKind::Ball)?,
             ],
-        };
-        if joints.soles().next().is_none() {
-            let model = model.name.clone();
-            return Err(RetargetError::Feet { model });
-        }
-        Ok(joints)
+        })
     }
 
     /// From hip to ankle, m.
@@ -132,40 +122,10 @@ impl<'a> HumanoidJoints<'a> {
         q[limb.hinge.q] = angle;
         upper * lower.rotation * Quat::from_axis_angle(limb.hinge.axis, angle)
     }
-
-    /// Puts the feet of `q`, `[frame][positions]`, on the ground: all but the lowest few.
-    pub fn stand(&self, q: &mut [f32]) {
-        let width = self.model.nq();
-        let mut poses = vec![Pose::default(); self.model.bodies.len()];
-        let mut axes = vec![Spatial::ZERO; self.model.nv()];
-        let mut heights: Vec<f32> = q
-            .chunks_exact(width)
-            .map(|q| {
-                kinematics(self.model, q, &mut poses, &mut axes);
-                self.lowest(&poses)
-            })
-            .collect();
-        let below = (BELOW * heights.len() as f32) as usize;
-        let (_, &mut ground, _) = heights.select_nth_unstable_by(below, f32::total_cmp);
-        for q in q.chunks_exact_mut(width) {
-            q[self.pelvis.q + 2] -= ground;
-        }
-    }
-
-    /// What the feet can touch the ground with.
-    fn soles(&self) -> impl Iterator<Item = &Geom> {
-        let of = |geom: &&Geom| self.feet.iter().any(|foot| geom.body == Some(foot.body));
-        self.model.geoms.iter().filter(of)
-    }
-
-    /// Height of the lowest point of the feet, m.
-    fn lowest(&self, poses: &[Pose]) -> f32 {
-        let heights = self.soles().map(|geom| geom.lowest_point(poses));
-        heights.fold(f32::INFINITY, f32::min)
-    }
 }
 
-fn joint<'a>(model: &'a Model, body: &str, kind: JointKind) -> Result<&'a Joint> {
+/// The only joint of a body.
+pub fn joint<'a>(model: &'a Model, body: &str, kind: JointKind) -> Result<&'a Joint> {
     let found = model.bodies.iter().find(|found| found.name == body);
     let joints = found.map_or(&[][..], |body| &model.joints[body.joints.clone()]);
     match joints {
