@@ -194,7 +194,7 @@ fn positions(frame: &[f64], model: &Model, joints: &[&Joint]) -> Result<Vec<f32>
         let w = next();
         let rotation = upright(Vec3::new(next(), next(), next())).extend(w);
         let length = rotation.length();
-        if length < SHORTEST {
+        if !(SHORTEST..f32::INFINITY).contains(&length) {
             let body = &model.bodies[joint.body].name;
             return Err(format!("the rotation of its {body} is no quaternion"));
         }

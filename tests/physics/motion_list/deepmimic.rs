@@ -131,6 +131,10 @@ fn damaged_files_are_refused_with_file_and_frame() {
         (changed(0, -1.0), "it lasts -1 s"),
         (changed(0, 1e6), "it lasts 1000000 s"),
         (
+            changed(9, 1e30),
+            "the rotation of its torso is no quaternion",
+        ),
+        (
             changed(8, 0.0),
             "the rotation of its torso is no quaternion",
         ),
