@@ -67,9 +67,16 @@ pub struct Train {
 /// What every kind of training may be asked for.
 #[derive(Args)]
 pub struct Choices {
-    /// A folder of BVH files, one BVH file, or a database file [default: synthetic motion]
+    /// A folder of BVH files, one BVH file, or a database file; for simulated bodies also DeepMimic's
+    /// recordings, or a motion list in TOML [default: synthetic motion]
     #[arg(long, value_name = "DIR|FILE")]
     data: Option<PathBuf>,
+    /// Folder of the files that a motion list names [default: the list's own]
+    #[arg(long, value_name = "DIR")]
+    data_folder: Option<PathBuf>,
+    /// Bring recordings whose feet stand off the ground to it, for simulated bodies
+    #[arg(long)]
+    ground: bool,
     /// Where to run: a real GPU if there is one, else the CPU [default: auto]
     #[arg(long, value_enum)]
     device: Option<Choice>,
@@ -225,6 +232,10 @@ impl Choices {
             // A run must find its data again from any folder.
             config.data = Some(std::path::absolute(&data).unwrap_or(data));
         }
+        if let Some(folder) = self.data_folder.clone().or(config.data_folder.take()) {
+            config.data_folder = Some(std::path::absolute(&folder).unwrap_or(folder));
+        }
+        config.ground |= self.ground;
         Ok(config)
     }
 }

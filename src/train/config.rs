@@ -37,9 +37,15 @@ pub struct Config {
     pub device: Choice,
     /// Seed of everything random.
     pub seed: u32,
-    /// A BVH file or folder, or a database file; without it the synthetic performer's data.
+    /// A BVH file or folder, or a database file, or a motion list; without it the synthetic performer's data.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub data: Option<PathBuf>,
+    /// The folder of the files that a motion list names; without it the list's own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub data_folder: Option<PathBuf>,
+    /// Whether recordings whose feet stand off the ground are brought to it, for tasks of a simulated body.
+    #[serde(skip_serializing_if = "std::ops::Not::not", default)]
+    pub ground: bool,
     /// Environment steps after which training stops.
     pub steps: u64,
     /// Seconds after which training stops.
@@ -169,6 +175,8 @@ impl Config {
             device: Choice::Auto,
             seed: 1,
             data: None,
+            data_folder: None,
+            ground: false,
             steps: chosen.steps,
             max_time_s: None,
             stop_at_success: None,
@@ -282,7 +290,9 @@ impl Config {
             key: String::new(),
             problem: one_line(&error),
         })?;
-        config.data = config.data.filter(|data| !data.as_os_str().is_empty());
+        let named = |path: &PathBuf| !path.as_os_str().is_empty();
+        config.data = config.data.filter(named);
+        config.data_folder = config.data_folder.filter(named);
         config.max_time_s = config.max_time_s.filter(|&seconds| seconds != 0.0);
         config.stop_at_success = config.stop_at_success.filter(|&success| success != 0.0);
         Ok(config)
@@ -292,6 +302,8 @@ impl Config {
     fn complete(&self) -> toml::Table {
         let mut all = table(self);
         all.entry("data").or_insert("".into());
+        all.entry("data_folder").or_insert("".into());
+        all.entry("ground").or_insert(false.into());
         all.entry("max_time_s").or_insert(0.0.into());
         all.entry("stop_at_success").or_insert(0.0.into());
         all

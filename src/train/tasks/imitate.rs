@@ -82,7 +82,7 @@ fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
 fn load(config: &Config) -> Result<Loaded> {
     let rules = settings(&config.task.settings)?;
     let model = Arc::new(scenes::humanoid());
-    let (library, notes) = motions::load(config.data.as_deref(), &model)?;
+    let (library, notes) = motions::load(config, &model)?;
     let task = ImitateTraining {
         rules,
         library: Arc::new(library),

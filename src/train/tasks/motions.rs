@@ -3,10 +3,10 @@
 use crate::env::EnvBatch;
 use crate::env::humanoid::recorded::demonstrations;
 use crate::gpu::Device;
-use crate::motion::import::ImportOptions;
 use crate::motion::synthetic;
 use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
+use crate::physics::motion_list::{ClipReport, MotionList, MotionListOptions};
 use crate::rl::Algorithm;
 use crate::rl::amp::AmpLearner;
 use crate::train::config::Config;
@@ -14,26 +14,48 @@ use crate::train::data::SYNTHETIC_SEED;
 use crate::train::evaluation::EvalOptions;
 use crate::train::task::Unsupported;
 use anyhow::Result;
-use std::path::Path;
 use std::sync::Arc;
 
+/// Frames that a clip needs at least: half a second, of which every window is one of two.
+const MIN_FRAMES: usize = 15;
 /// Minutes of the synthetic performer that a body is to move like, if there are no recordings.
 const MINUTES: f32 = 2.0;
 
-/// Loads recordings of a model's body; without a path, the synthetic performer's motion. The notes say what
-/// the user should know of them.
+/// Loads recordings of a model's body: a motion list, a folder or a file; without any, the synthetic
+/// performer's motion. The notes say what the user should know of them.
 ///
 /// # Errors
 /// They are missing or damaged, or of nobody that the body could move like.
-pub fn load(path: Option<&Path>, model: &Arc<Model>) -> Result<(MotionLibrary, Vec<String>)> {
-    let Some(path) = path else {
+pub fn load(config: &Config, model: &Arc<Model>) -> Result<(MotionLibrary, Vec<String>)> {
+    let Some(path) = &config.data else {
         let (clips, roles) = synthetic::perform(SYNTHETIC_SEED, MINUTES);
         let note = "no data given: synthetic motion of the built-in performer".to_string();
         return Ok((MotionLibrary::of(&clips, &roles, model)?, vec![note]));
     };
-    let library = MotionLibrary::load(&[path], &ImportOptions::default(), model)?;
-    let notes = library.notes.clone();
-    Ok((library, notes))
+    let list = MotionList::read(path, config.data_folder.as_deref())?;
+    let options = MotionListOptions {
+        ground: config.ground,
+        min_frames: MIN_FRAMES,
+        ..MotionListOptions::default()
+    };
+    let loaded = list.load(model, &options)?;
+    let mut notes = loaded.library.notes.clone();
+    notes.extend(loaded.report.iter().map(line));
+    Ok((loaded.library, notes))
+}
+
+/// What came of a recording.
+fn line(clip: &ClipReport) -> String {
+    let [low, high] = clip.foot_height.map(|height| 100.0 * height);
+    format!(
+        "{}: {:.1} s, {:.1} % of what is drawn; lowest foot {low:.0} to {high:.0} cm high, {:.0} % of the \
+         frames at a joint's limit, {} frames of T-pose dropped",
+        clip.name,
+        clip.seconds,
+        100.0 * clip.share,
+        100.0 * clip.limits_hit,
+        clip.t_pose_frames
+    )
 }
 
 /// PPO with a discriminator of the library's motion.

@@ -75,7 +75,7 @@ fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
 
 fn load(config: &Config) -> Result<Loaded> {
     let model = Arc::new(scenes::humanoid());
-    let (library, notes) = motions::load(config.data.as_deref(), &model)?;
+    let (library, notes) = motions::load(config, &model)?;
     let task = PunchTraining {
         punch: settings(&config.task.settings)?,
         joystick: is_joystick(config),
