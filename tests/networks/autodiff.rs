@@ -173,3 +173,40 @@ pub fn ppo_loss(
         .add(kl.mul_scalar(kl_coefficient));
     (loss.mul_scalar(f64::from(coefficients.inv_count)), sums)
 }
+
+/// The gradient of the penalty on a network's gradient with respect to its observation, from the first-order
+/// expression: a product of weights and of masks that do not depend on them. Rows of `width` begin with
+/// observations; those before `first` do not count.
+pub fn penalty(
+    network: &Network,
+    flat: &[f32],
+    samples: &[f32],
+    width: usize,
+    first: usize,
+    weight: f32,
+) -> Vec<f32> {
+    let (rows, dim) = (samples.len() / width - first, network.observation().dim());
+    let all = tensor(samples, [samples.len() / width, width]);
+    let mut x = all.narrow(0, first, rows).narrow(1, 0, dim);
+    let constant = tensor(flat, [flat.len()]);
+    let mut masks = Vec::new();
+    for params in network.layers() {
+        x = forward(params, &constant, x);
+        masks.push(x.clone().sign());
+    }
+    let leaf = leaf(flat);
+    let heads = network.outputs();
+    let mut slope = Tensor::<2>::from_inner(x.ones_like().mul_scalar(1.0 / heads as f64));
+    for (number, params) in network.layers().iter().enumerate().rev() {
+        let layer = &params.layer;
+        let weights = leaf.clone().slice([params.weights()]);
+        let weights: Tensor<2> = weights.reshape([layer.patch(), layer.filters()]);
+        slope = slope.matmul(weights.transpose());
+        if let Some(below) = number.checked_sub(1) {
+            slope = slope.mul(Tensor::from_inner(masks[below].clone()));
+        }
+    }
+    let loss = slope.square().sum().mul_scalar(f64::from(weight) / rows as f64);
+    let gradients = loss.backward();
+    values(leaf.grad(&gradients).expect("a gradient"))
+}

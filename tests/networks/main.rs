@@ -7,6 +7,7 @@
     reason = "on the CPU, in an order that does not change"
 )]
 mod autodiff;
+mod penalty;
 mod refused;
 mod running;
 

@@ -2,6 +2,8 @@
 //! Oracle: the twins, which are what the CPU plays with. Bar: what is drawn or counted equal bit for bit;
 //! else a few roundings.
 
+mod punch;
+
 use crate::inputs::{Draw, POISON, SIZES, close, same};
 use footwork::kernels::humanoid::{
     action_targets, draw_starts, end_episode, episode_sums, random_pushes, stand_reward,

@@ -2,6 +2,7 @@
 
 mod adam;
 mod backward;
+mod discriminator;
 mod forward;
 mod gae;
 mod gather_samples;
