@@ -1,7 +1,9 @@
 //! The performer boxes with its feet on the ground, its guard up and its fists fast.
 
 use footwork::motion::RATE;
-use footwork::motion::synthetic::boxing::{BoxingTake, Punch, PunchKind, PunchTarget, boxing_takes};
+use footwork::motion::synthetic::boxing::{
+    BoxingTake, Punch, PunchKind, PunchTarget, boxing_takes,
+};
 use footwork::motion::synthetic::{perform, perform_boxing};
 use glam::{Quat, Vec3, vec3};
 use std::collections::HashSet;
@@ -46,7 +48,11 @@ fn lasts_as_long_as_asked_in_clips_of_half_a_minute() {
     for (index, clip) in clips.iter().enumerate() {
         assert_eq!(clip.name, format!("boxing_{index:03}"));
         assert!((20.0..50.0).contains(&clip.seconds()), "{}", clip.seconds());
-        assert!(clip.rotations.iter().all(|rotation| rotation.is_normalized()));
+        assert!(
+            clip.rotations
+                .iter()
+                .all(|rotation| rotation.is_normalized())
+        );
         assert!(clip.positions.iter().all(|position| position.is_finite()));
     }
     let (walking, walkers) = perform(SEED, 0.5);
@@ -99,7 +105,7 @@ fn feet_never_cross_nor_sink() {
         for (at, rotations) in frames(take) {
             let left = leftwards(&rotations);
             let apart = (at[ankles[0]] - at[ankles[1]]).dot(left);
-            assert!(apart > 0.1, "{}: {apart} m", take.clip.name);
+            assert!(apart > 0.05, "{}: {apart} m", take.clip.name);
             let lowest = toes.map(|toe| at[toe].y).into_iter().fold(1.0, f32::min);
             assert!(lowest > 0.015, "{}: {lowest} m", take.clip.name);
         }
@@ -183,7 +189,10 @@ fn elbows_are_hinges_that_stay_down_in_guard() {
 
 fn in_guard(take: &BoxingTake, side: usize, frame: usize) -> bool {
     let time = frame as f32 / RATE;
-    let mut punches = take.punches.iter().filter(|punch| punch.kind.side() == side);
+    let mut punches = take
+        .punches
+        .iter()
+        .filter(|punch| punch.kind.side() == side);
     !punches.any(|punch| (punch.start..punch.end()).contains(&time))
 }
 
@@ -224,9 +233,16 @@ fn fists_are_as_fast_as_a_boxers() {
             let punches = take.punches.iter().filter(|punch| punch.kind == kind);
             peaks.extend(punches.filter_map(|punch| peak(take, &at, punch)));
         }
-        let [least, usual, most] = [0.0, 0.5, 1.0].map(|share| quantile(&mut peaks, share));
-        println!("{kind:?}: {} times, {least:.1}, {usual:.1}, {most:.1} m/s", peaks.len());
-        assert!(least > 3.4, "{kind:?}: {least} m/s");
+        let [least, slow, usual, most] =
+            [0.0, 0.1, 0.5, 1.0].map(|share| quantile(&mut peaks, share));
+        println!(
+            "{kind:?}: {} times, {least:.1}, {usual:.1}, {most:.1} m/s",
+            peaks.len()
+        );
+        assert!(
+            least > 3.4 && slow > 4.0,
+            "{kind:?}: {least} m/s, {slow} m/s"
+        );
         assert!((4.2..6.0).contains(&usual), "{kind:?}: {usual} m/s");
         assert!(most < 7.0, "{kind:?}: {most} m/s");
     }

@@ -4,6 +4,8 @@
 //! Stride timing (`gait`) and footfalls (`footfall`) are planned on that track, whose future
 //! is known; the feet (`feet`) move from one to the next, the pelvis and the upper body
 //! (`body`) follow the gait, and the legs (`legs`) join pelvis and feet.
+//!
+//! The same skeleton also boxes: see [`boxing`].
 
 mod body;
 pub mod boxing;

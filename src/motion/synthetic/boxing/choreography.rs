@@ -20,8 +20,8 @@ pub struct BoxingStep {
 }
 
 /// Direction of the hips and of the shoulders against the heading, in guard (rad).
-pub const HIPS: f32 = -0.5;
-pub const CHEST: f32 = -0.56;
+pub const HIPS_YAW: f32 = -0.5;
+pub const CHEST_YAW: f32 = -0.56;
 /// Forward lean of the trunk in guard (rad).
 const LEAN: f32 = 0.16;
 /// Lowering of the hips, and leaning, in punches to the head and to the body (m, rad).
@@ -59,8 +59,8 @@ impl Choreography {
         let stance = Stance::default();
         Choreography {
             heading: Curve::default(),
-            hips: Curve::resting_at(HIPS),
-            chest: Curve::resting_at(CHEST),
+            hips: Curve::resting_at(HIPS_YAW),
+            chest: Curve::resting_at(CHEST_YAW),
             lean: Curve::resting_at(LEAN),
             tilt: Curve::default(),
             dip: Curve::default(),
@@ -96,8 +96,7 @@ impl Choreography {
         self.stance = self.stance.pivoted(0, turn);
         self.swing(1, (from + 0.15 * seconds, from + 0.85 * seconds));
         let left = &mut self.feet[0];
-        left.yaw
-            .go((from, to), self.stance.foot_yaw(0) - left.yaw.end());
+        left.yaw.arrive((from, to), self.stance.foot_yaw(0));
         left.heel.visit((from, middle), (middle, to), 0.12);
         self.heading.go((from, to), turn);
         self.steps.push(BoxingStep {
@@ -129,15 +128,18 @@ impl Choreography {
         ] {
             curve.visit(windup.0, windup.1, -effort.windup * by);
         }
-        self.hips.arrive((start - 0.1, apex - 0.03), HIPS + effort.hips);
-        self.chest.arrive((start - 0.05, apex), CHEST + effort.chest);
+        self.hips
+            .arrive((start - 0.1, apex - 0.03), HIPS_YAW + effort.hips);
+        self.chest
+            .arrive((start - 0.05, apex), CHEST_YAW + effort.chest);
 
         let hook_low = low && punch.kind.is_hook();
         let tilt = effort.tilt * if hook_low { TILT } else { 1.0 };
         self.tilt.arrive((start - 0.15, apex), tilt);
         self.lean.arrive((start - 0.2, apex), LEAN + of(STOOP));
         self.dip.arrive((start - 0.25, apex), of(DIP));
-        self.weight.arrive((start - 0.25, apex), 0.5 + effort.weight);
+        self.weight
+            .arrive((start - 0.25, apex), 0.5 + effort.weight);
 
         let drive = (start - 0.08, apex);
         self.feet[punch.kind.side()].drive(drive, effort.pivot, effort.heel);
@@ -147,8 +149,8 @@ impl Choreography {
 
     /// Returns to guard between two moments, the height of the hips last.
     pub fn recover(&mut self, (from, to): (f32, f32)) {
-        self.hips.arrive((from, to + 0.1), HIPS);
-        self.chest.arrive((from, to + 0.05), CHEST);
+        self.hips.arrive((from, to + 0.1), HIPS_YAW);
+        self.chest.arrive((from, to + 0.05), CHEST_YAW);
         self.tilt.arrive((from, to + 0.15), 0.0);
         self.lean.arrive((from, to + 0.15), LEAN);
         self.dip.arrive((from, to + 0.25), 0.0);

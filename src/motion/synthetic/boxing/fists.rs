@@ -1,7 +1,7 @@
 //! The ways of the fists: from the guard to what they punch, and back.
 
 use super::arms::LENGTH;
-use super::choreography::{CHEST, Choreography};
+use super::choreography::{CHEST_YAW, Choreography};
 use super::curve::minimum_jerk;
 use super::habits::Habits;
 use super::punch::{Punch, PunchTarget};
@@ -17,13 +17,13 @@ const GUARD_TURN: f32 = 0.2;
 /// punches, in hooks to the head and to the body.
 const ELBOW_GUARD: Vec3 = vec3(0.3, -1.0, -0.1);
 const ELBOW_STRAIGHT: Vec3 = vec3(0.6, -1.0, 0.0);
-const ELBOW_HOOK: Vec3 = vec3(1.0, 0.1, -0.35);
+const ELBOW_HOOK: Vec3 = vec3(1.0, 0.3, -0.35);
 const ELBOW_HOOK_LOW: Vec3 = vec3(0.9, -0.5, -0.45);
 /// Where a left hook flies past, seen from the neck with the chest: to the head and to the body (m).
 const AROUND: Vec3 = vec3(0.5, -0.06, -0.05);
 const AROUND_LOW: Vec3 = vec3(0.49, -0.18, -0.04);
-/// A hook ends so far beyond the middle (m).
-const BEYOND: f32 = 0.2;
+/// A hook of either hand ends so far beyond the middle (m).
+const BEYOND: [f32; 2] = [0.22, 0.12];
 /// Distance of whom a straight is aimed at (m).
 const DISTANCE: f32 = 0.95;
 /// A fist is fastest shortly before it hits: the later, the higher this is.
@@ -52,7 +52,7 @@ impl Flight {
         let side = punch.kind.side();
         let up = punch.height - hips;
         let to = if punch.kind.is_hook() {
-            let aside = trunk.neck.x - SIDE[side] * BEYOND + punch.aside;
+            let aside = trunk.neck.x - SIDE[side] * BEYOND[side] + punch.aside;
             vec3(aside, up, trunk.neck.z + punch.reach)
         } else {
             let shoulder = trunk.shoulders[side];
@@ -94,7 +94,7 @@ impl Flight {
     /// How far the elbow has taken the punch's direction: sooner than the fist gets there.
     fn elbow_share(&self, time: f32) -> f32 {
         let punch = &self.punch;
-        let rise = minimum_jerk(1.5 * (time - punch.start) / punch.out);
+        let rise = minimum_jerk(1.2 * (time - punch.start) / punch.out);
         rise - minimum_jerk((time - punch.turn()) / punch.back)
     }
 
@@ -146,7 +146,7 @@ fn guard(side: usize, habits: &Habits, time: f32, trunk: &Trunk) -> Vec3 {
     let apart = SIDE[side] * habits.apart;
     let drift = habits.drift(side, time);
     let from_neck = GUARD[side] + vec3(apart, habits.raised + drift, 0.7 * drift);
-    let turned = Quat::from_rotation_y(GUARD_TURN * (trunk.yaw - CHEST));
+    let turned = Quat::from_rotation_y(GUARD_TURN * (trunk.yaw - CHEST_YAW));
     trunk.neck + trunk.lean * turned * from_neck
 }
 

@@ -8,6 +8,12 @@ use std::f32::consts::PI;
 
 /// Seconds in guard before anything happens.
 const LEAD_IN: f32 = 0.8;
+/// The body gathers itself so long before the first fist sets off (s).
+const GATHER: f32 = 0.18;
+/// A fist may set off so long before the second foot of a step has landed (s).
+const LANDING: f32 = 0.06;
+/// Between two punches of one hand it rests in guard at least so long (s).
+const PAUSE: f32 = 0.08;
 /// Out of a punch of the other hand a hook has further to turn, and takes so much longer (s).
 const FURTHER: f32 = 0.03;
 /// How far to a side of straight ahead punches go, at most (m).
@@ -118,18 +124,17 @@ impl Planner<'_> {
 
     /// Punches, one after the other, sometimes with a step forward under the first.
     fn punches(&mut self, kinds: &[PunchKind]) {
-        // The body gathers itself before the first fist sets off.
-        let mut start = self.now + 0.2;
+        let mut start = self.now + GATHER;
+        let mut free = [start; 2];
         if self.random.chance(0.35) {
             let swing = self.random.range(0.2, 0.23);
             let length = self.random.range(0.15, 0.3);
-            self.plan.step(start - 0.02, (0.0, length, 0.0), swing);
-            if kinds[0] != Jab {
-                start += swing;
-            }
+            self.plan.step(start, (0.0, length, 0.0), swing);
+            // A jab flies with the step; the others have both feet on the ground behind them.
+            let landed = start + 2.0 * swing - LANDING;
+            free = [if kinds[0] == Jab { start } else { landed }, landed];
         }
         let mut target = self.target();
-        let mut free = [start; 2];
         for (index, &kind) in kinds.iter().enumerate() {
             let side = kind.side();
             let mut punch = self.punch(kind, target, start.max(free[side]));
@@ -143,7 +148,7 @@ impl Planner<'_> {
             if next.is_none_or(|next| next.side() == side) {
                 self.plan.recover((punch.turn(), punch.end()));
             }
-            free[side] = punch.end();
+            free[side] = punch.end() + PAUSE;
             start = punch.turn() + self.random.range(0.03, 0.1);
             self.now = punch.end();
             if self.random.chance(0.25) {
@@ -163,13 +168,14 @@ impl Planner<'_> {
     fn punch(&mut self, kind: PunchKind, target: PunchTarget, start: f32) -> Punch {
         let random = &mut *self.random;
         let out = match kind {
-            Jab => random.range(0.175, 0.195),
+            Jab => random.range(0.17, 0.19),
             Cross => random.range(0.205, 0.23),
-            LeftHook => random.range(0.21, 0.23),
-            RightHook => random.range(0.27, 0.31),
+            LeftHook => random.range(0.205, 0.225),
+            RightHook => random.range(0.28, 0.31),
         };
         let back = random.range(0.3, 0.4);
         let height = match target {
+            PunchTarget::Head if kind.is_hook() => random.range(1.36, 1.48),
             PunchTarget::Head => random.range(1.36, 1.54),
             PunchTarget::Body => random.range(0.98, 1.14),
         };

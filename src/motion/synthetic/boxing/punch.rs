@@ -99,8 +99,8 @@ impl PunchKind {
                 heel: 0.2,
             },
             PunchKind::RightHook => Effort {
-                hips: 0.7,
-                chest: 1.15,
+                hips: 0.65,
+                chest: 1.05,
                 windup: 0.15,
                 tilt: 0.05,
                 weight: 0.12,

@@ -17,7 +17,7 @@ use glam::{Quat, Vec3, vec3};
 const ROUNDS: usize = 3;
 /// Frames on either side over which hips answer the swing of a limb: legs and arms are too quick for
 /// the hips to balance each of their moves.
-const STEADY: usize = 2;
+const STEADY: usize = 1;
 /// A heel begins to lift when its leg is stretched to this share of its length, and by so much (rad)
 /// for every further share.
 const STRETCHED: f32 = 0.955;
