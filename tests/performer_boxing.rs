@@ -2,7 +2,7 @@
 
 use footwork::motion::RATE;
 use footwork::motion::synthetic::boxing::{
-    BoxingTake, Punch, PunchKind, PunchTarget, boxing_takes,
+    BoxingStep, BoxingTake, Punch, PunchKind, PunchTarget, boxing_takes,
 };
 use footwork::motion::synthetic::{perform, perform_boxing};
 use glam::{Quat, Vec3, vec3};
@@ -271,28 +271,50 @@ fn punches_reach_far_ahead_at_the_height_of_their_target() {
     }
 }
 
+/// Turning of a pair of joints about up against where the head looks, positive to the left (rad).
+fn turning((at, rotations): &(Vec<Vec3>, Vec<Quat>), [left, right]: [usize; 2]) -> f32 {
+    let (straight, across) = (leftwards(rotations), (at[left] - at[right]) * FLAT);
+    straight.cross(across).y.atan2(straight.dot(across))
+}
+
 #[test]
-fn shoulders_turn_into_the_punch_after_the_hips() {
-    let (hips, shoulders) = (sided("UpLeg"), sided("Arm"));
-    let yaw = |at: &[Vec3], [left, right]: [usize; 2], leftwards: Vec3| {
-        let across = (at[left] - at[right]) * FLAT;
-        across.angle_between(leftwards).to_degrees()
-    };
+fn hips_turn_into_a_cross_before_the_shoulders_and_the_fist_is_last() {
+    let (hips, shoulders, hand) = (sided("UpLeg"), sided("Arm"), sided("Hand")[1]);
+    let mut latest = [0.0; 3];
     for take in TAKES.iter() {
         let at = frames(take);
         for punch in take.punches.iter().filter(|p| p.kind == PunchKind::Cross) {
-            let [start, apex] = [punch.start, punch.apex()].map(|t| (t * RATE) as usize);
-            let (Some(first), Some(last)) = (at.get(start), at.get(apex)) else {
+            let [from, to] = [punch.start - 0.1, punch.turn()].map(|t| (t * RATE) as usize);
+            let Some(frames) = at.get(from..=to) else {
                 continue;
             };
-            let left = leftwards(&first.1);
-            let turned = |joints| (yaw(&first.0, joints, left), yaw(&last.0, joints, left));
-            let (before, after) = turned(shoulders);
-            assert!(before > 20.0 && after > 20.0, "{before} {after}");
-            let (before, after) = turned(hips);
-            assert!(before > 10.0 && after > 5.0, "{before} {after}");
+            let [first, last] = [0, to - from].map(|frame| turning(&frames[frame], shoulders));
+            assert!(first < -0.3 && last > 0.3, "from {first} to {last}");
+            let turned = |joints| {
+                let yaws = frames.iter().map(|frame| turning(frame, joints));
+                yaws.collect::<Vec<f32>>()
+            };
+            let reached = frames
+                .iter()
+                .map(|frame| -frame.0[hand].distance(frames[to - from].0[hand]));
+            for (sum, way) in
+                latest
+                    .iter_mut()
+                    .zip([turned(hips), turned(shoulders), reached.collect()])
+            {
+                *sum += fastest(&way);
+            }
         }
     }
+    println!("{latest:?}");
+    assert!(latest.is_sorted(), "{latest:?}");
+}
+
+/// The step in which something grows most.
+fn fastest(values: &[f32]) -> f32 {
+    let steps = values.windows(2).map(|pair| pair[1] - pair[0]).enumerate();
+    let fastest = steps.max_by(|a, b| a.1.total_cmp(&b.1));
+    fastest.map_or(0.0, |(step, _)| step as f32)
 }
 
 #[test]
@@ -342,10 +364,9 @@ fn every_punch_and_every_way_of_stepping_appears() {
 
 #[test]
 fn closes_the_distance_at_a_boxers_speed() {
-    let seconds = |step: &footwork::motion::synthetic::boxing::BoxingStep| step.to - step.from;
-    let fast = |pair: &[footwork::motion::synthetic::boxing::BoxingStep]| {
-        pair[0].bearing.abs() < 0.3 && pair[1].from - pair[0].to < 0.01
-    };
+    let seconds = |step: &BoxingStep| step.to - step.from;
+    let fast =
+        |pair: &[BoxingStep]| pair[0].bearing.abs() < 0.3 && pair[1].from - pair[0].to < 0.01;
     let mut speeds = Vec::new();
     for take in TAKES.iter() {
         let pairs = take.steps.windows(2).filter(|pair| fast(pair));
