@@ -5,6 +5,12 @@ use footwork::motion::synthetic::boxing::{
     BoxingStep, BoxingTake, Punch, PunchKind, PunchTarget, boxing_takes,
 };
 use footwork::motion::synthetic::{perform, perform_boxing};
+use footwork::physics::humanoid::humanoid;
+use footwork::physics::kinematics::kinematics;
+use footwork::physics::model::Model;
+use footwork::physics::pose::Pose;
+use footwork::physics::retarget::retarget;
+use footwork::physics::spatial::Spatial;
 use glam::{Quat, Vec3, vec3};
 use std::collections::HashSet;
 use std::sync::LazyLock;
@@ -374,4 +380,52 @@ fn closes_the_distance_at_a_boxers_speed() {
     }
     assert!(speeds.len() > 50, "{} steps", speeds.len());
     assert!(speeds.iter().all(|speed| (0.75..1.25).contains(speed)));
+}
+
+/// Poses of the simulated humanoid's bodies at each frame.
+fn humanoid_poses(model: &Model, take: &BoxingTake) -> Vec<Vec<Pose>> {
+    let (_, roles) = perform_boxing(SEED, 0.0);
+    let motion = retarget(&take.clip, &roles, model).expect("the performer's skeleton");
+    let mut axes = vec![Spatial::default(); model.nv()];
+    let mut poses = vec![Pose::default(); model.bodies.len()];
+    let frames = (0..motion.frames).map(|frame| {
+        kinematics(model, motion.q(frame), &mut poses, &mut axes);
+        poses.clone()
+    });
+    frames.collect()
+}
+
+#[test]
+fn the_humanoid_stands_on_the_ground_in_balance() {
+    let model = humanoid();
+    let feet = ["left_foot", "right_foot"].map(|name| model.body(name).expect(name));
+    let soles = model
+        .geoms
+        .iter()
+        .filter(|geom| geom.body.is_some_and(|body| feet.contains(&body)));
+    let soles: Vec<_> = soles.collect();
+    let mass: f32 = model.bodies.iter().map(|body| body.mass).sum();
+    for take in &TAKES[..4] {
+        for (poses, planted) in humanoid_poses(&model, take).iter().zip(&take.planted) {
+            let lowest = soles.iter().map(|sole| sole.lowest_point(poses));
+            let lowest = lowest.fold(f32::INFINITY, f32::min);
+            assert!((-0.01..0.02).contains(&lowest), "{lowest} m");
+            if *planted != [true, true] {
+                continue;
+            }
+            let bodies = model.bodies.iter().zip(poses);
+            let centre: Vec3 = bodies
+                .map(|(body, pose)| pose.at(body.com) * body.mass)
+                .sum();
+            let [left, right] = feet.map(|foot| poses[foot].position);
+            let base = (left - right) * vec3(1.0, 1.0, 0.0);
+            let over = (centre / mass - right) * vec3(1.0, 1.0, 0.0);
+            let share = over.dot(base) / base.length_squared();
+            let aside = (over - share * base).length();
+            assert!(
+                (0.0..1.0).contains(&share) && aside < 0.15,
+                "{share} {aside}"
+            );
+        }
+    }
 }
