@@ -1,6 +1,6 @@
 //! Where the feet stand and how they move over the ground.
 
-use super::curve::Curve;
+use super::curve::{Curve, minimum_jerk};
 use crate::motion::synthetic::ease::bell;
 use crate::motion::synthetic::track::{heading, left};
 use glam::{Vec3, vec3};
@@ -30,10 +30,11 @@ pub struct Stance {
 impl Stance {
     /// Place of the ball of a foot.
     pub fn ball(&self, side: usize) -> Vec3 {
-        self.at + self.from_middle(side)
+        self.at + self.off_middle(side)
     }
 
-    fn from_middle(&self, side: usize) -> Vec3 {
+    /// From the middle of the stance to the ball of a foot.
+    fn off_middle(&self, side: usize) -> Vec3 {
         let (aside, ahead) = PLACES[side];
         left(self.yaw) * aside + heading(self.yaw) * ahead
     }
@@ -58,7 +59,7 @@ impl Stance {
             ..*self
         };
         Stance {
-            at: self.ball(side) - turned.from_middle(side),
+            at: self.ball(side) - turned.off_middle(side),
             ..turned
         }
     }
@@ -167,6 +168,7 @@ impl Footing {
     }
 }
 
+/// From 0 before a foot leaves or lands to 1 after it.
 fn ramp(after: f32) -> f32 {
-    super::curve::minimum_jerk((after + SHED.0) / (SHED.0 + SHED.1))
+    minimum_jerk((after + SHED.0) / (SHED.0 + SHED.1))
 }

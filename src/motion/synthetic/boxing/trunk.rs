@@ -12,7 +12,7 @@ use glam::{Quat, Vec3};
 /// The share of the trunk's lean that the hips show.
 const HIPS_LEAN: f32 = 0.4;
 /// How far the head turns and leans with the shoulders, as shares, and its bow in guard (rad).
-const HEAD_TURN: f32 = 0.33;
+const HEAD_TURN: f32 = 0.38;
 const HEAD_LEAN: f32 = 0.45;
 const CHIN_DOWN: f32 = 0.12;
 /// The shoulders are drawn up beside the chin (rad).
