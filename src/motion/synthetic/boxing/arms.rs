@@ -1,6 +1,5 @@
 //! Two-joint arms: a shoulder and a fist in, rotations out.
 
-use super::fists::Fist;
 use super::trunk::Trunk;
 use crate::motion::synthetic::ease::level_off;
 use crate::motion::synthetic::figure::{ARM, FORE_ARM, HAND, JOINTS, SIDE};
@@ -15,6 +14,15 @@ pub const LENGTH: f32 = UPPER + FORE;
 const STRETCH: (f32, f32) = (0.98, 0.994);
 /// The shortest an arm folds (m): an elbow bends to at most about 145 degrees.
 const SHORTEST: f32 = 0.165;
+
+/// What an arm is to do.
+pub struct Fist {
+    pub at: Vec3,
+    /// Which way the elbow points.
+    pub elbow: Vec3,
+    /// Turning of the palm down from where it faces in guard (rad).
+    pub pronation: f32,
+}
 
 /// Writes the local rotations of an arm into `pose`.
 pub fn reach(trunk: &Trunk, side: usize, fist: &Fist, pose: &mut [Quat; JOINTS]) {

@@ -1,6 +1,6 @@
 //! The ways of the fists: from the guard to what they punch, and back.
 
-use super::arms::LENGTH;
+use super::arms::{Fist, LENGTH};
 use super::choreography::{CHEST_YAW, Choreography};
 use super::curve::minimum_jerk;
 use super::habits::Habits;
@@ -30,15 +30,6 @@ const DISTANCE: f32 = 0.95;
 const WHIP: f32 = 1.5;
 /// The palm turns down by so much in a straight and in a hook (rad).
 const PRONATION: (f32, f32) = (1.3, 0.5);
-
-/// What an arm is to do.
-pub struct Fist {
-    pub at: Vec3,
-    /// Which way the elbow points.
-    pub elbow: Vec3,
-    /// Turning of the palm down from where it faces in guard (rad).
-    pub pronation: f32,
-}
 
 /// A punch, and where its fist gets to, seen from the hips in the heading's frame.
 pub struct Flight {
