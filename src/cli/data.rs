@@ -138,7 +138,7 @@ impl Synth {
             ("--minutes", self.minutes),
             ("--boxing-minutes", self.boxing_minutes),
         ] {
-            if !(minutes >= 0.1 && minutes <= 1000.0) {
+            if !(0.1..=1000.0).contains(&minutes) {
                 return Err(Usage(format!("{name} must be from 0.1 to 1000")).into());
             }
         }
