@@ -4,11 +4,13 @@ use super::Usage;
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand, ValueEnum};
 use footwork::matching::MotionMatcher;
+use footwork::motion::clip::Clip;
 use footwork::motion::database::Database;
 use footwork::motion::features::MIN_FUTURE_FRAMES;
 use footwork::motion::import::ImportOptions;
 use footwork::motion::normalise::Weights;
-use footwork::motion::{RATE, bvh, synthetic};
+use footwork::motion::synthetic::{self, boxing};
+use footwork::motion::{RATE, bvh};
 use footwork::report::table::table;
 use footwork::train::data;
 use std::path::{Path, PathBuf};
@@ -75,6 +77,19 @@ pub struct Synth {
     /// Also write every clip as a BVH file to this folder
     #[arg(long, value_name = "DIR")]
     bvh: Option<PathBuf>,
+    /// Also write clips of boxing (guard, steps, pivots, punches) as BVH files to this folder; they are no
+    /// part of the database
+    #[arg(long, value_name = "DIR")]
+    boxing: Option<PathBuf>,
+    /// Minutes of boxing
+    #[arg(
+        long,
+        value_name = "MINUTES",
+        default_value_t = boxing::MINUTES,
+        requires = "boxing",
+        allow_negative_numbers = true
+    )]
+    boxing_minutes: f32,
     #[arg(long, value_enum, default_value = "paper")]
     weights: WeightPreset,
 }
@@ -119,8 +134,13 @@ impl Import {
 
 impl Synth {
     fn run(self) -> Result<()> {
-        if !(self.minutes >= 0.1 && self.minutes <= 1000.0) {
-            return Err(Usage("--minutes must be from 0.1 to 1000".into()).into());
+        for (name, minutes) in [
+            ("--minutes", self.minutes),
+            ("--boxing-minutes", self.boxing_minutes),
+        ] {
+            if !(0.1..=1000.0).contains(&minutes) {
+                return Err(Usage(format!("{name} must be from 0.1 to 1000")).into());
+            }
         }
         let (clips, roles) = synthetic::perform(self.seed, self.minutes);
         save(
@@ -128,14 +148,23 @@ impl Synth {
             &self.out,
         )?;
         if let Some(folder) = &self.bvh {
-            std::fs::create_dir_all(folder)
-                .with_context(|| format!("cannot make {}", folder.display()))?;
-            for clip in &clips {
-                bvh::write(&folder.join(format!("{}.bvh", clip.name)), clip)?;
-            }
+            write(folder, &clips)?;
+        }
+        if let Some(folder) = &self.boxing {
+            let (clips, _) = synthetic::perform_boxing(self.seed, self.boxing_minutes);
+            write(folder, &clips)?;
         }
         Ok(())
     }
+}
+
+/// Writes clips as BVH files into a folder.
+fn write(folder: &Path, clips: &[Clip]) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    for clip in clips {
+        bvh::write(&folder.join(format!("{}.bvh", clip.name)), clip)?;
+    }
+    Ok(())
 }
 
 fn save(database: Database, path: &Path) -> Result<()> {

@@ -48,6 +48,20 @@ fn synthetic_motion_can_be_looked_at() {
     assert!(embedded.err.contains("synthetic motion"), "{embedded:?}");
 }
 
+/// Boxing lies beside the database, which it leaves as it is.
+#[test]
+fn boxing_is_written_beside_the_database() {
+    let place = Place::new();
+    let alone = place.done("data synth --minutes 0.5 --out alone.footwork");
+    let made = place
+        .done("data synth --minutes 0.5 --out with.footwork --boxing box --boxing-minutes 0.5");
+    assert_eq!(fingerprint(&made.out), fingerprint(&alone.out));
+    let info = place.done("data info box");
+    for part in ["boxing_000", "0.5 minutes"] {
+        assert!(info.out.contains(part), "no {part} in {info:?}");
+    }
+}
+
 /// The index beside a database saves time and changes nothing.
 #[test]
 fn a_database_trains_alike_whatever_became_of_its_index() {

@@ -15,3 +15,13 @@ pub fn bell(s: f32) -> f32 {
     let x = s.clamp(0.0, 1.0);
     16.0 * x * x * (1.0 - x) * (1.0 - x)
 }
+
+/// `x` up to `limit`, then levelling off below `most`.
+pub fn level_off(x: f32, limit: f32, most: f32) -> f32 {
+    let room = most - limit;
+    if x <= limit {
+        x
+    } else {
+        most - room * ((limit - x) / room).exp()
+    }
+}

@@ -137,7 +137,7 @@ impl Swing<'_> {
 
 /// A foot over `place` (its ball's, when flat), its sole's lowest point `height` metres up.
 /// `air` (0..1) rounds the change between pivoting on the heel and on the ball.
-fn posed(place: Vec3, yaw: f32, pitch: f32, height: f32, air: f32) -> FootState {
+pub fn posed(place: Vec3, yaw: f32, pitch: f32, height: f32, air: f32) -> FootState {
     let turn = Quat::from_rotation_y(yaw);
     let rotation = turn * Quat::from_rotation_x(-pitch);
     let width = 0.05 * air;

@@ -4,14 +4,18 @@
 //! Stride timing (`gait`) and footfalls (`footfall`) are planned on that track, whose future
 //! is known; the feet (`feet`) move from one to the next, the pelvis and the upper body
 //! (`body`) follow the gait, and the legs (`legs`) join pelvis and feet.
+//!
+//! The same skeleton also boxes: see [`boxing`].
 
 mod body;
+pub mod boxing;
 mod ease;
 mod feet;
 mod figure;
 mod footfall;
 mod gait;
 mod legs;
+mod lengths;
 mod plan;
 mod random;
 mod track;
@@ -20,9 +24,11 @@ use super::RATE;
 use super::clip::Clip;
 use super::roles::Roles;
 use body::{Bearing, Manner};
+pub use boxing::perform_boxing;
 use feet::FootState;
-use figure::{FOOT, HIPS, JOINTS, LEG, TOE, UP_LEG};
+use figure::{HIPS, JOINTS};
 use glam::{Quat, Vec3};
+use lengths::lengths;
 use random::Random;
 use rayon::prelude::*;
 use track::Track;
@@ -33,8 +39,6 @@ pub const MINUTES: f32 = 39.0;
 const CLIP_SECONDS: (f32, f32) = (25.0, 55.0);
 /// Frames planned beyond a clip's end, so that its last footfalls know where they lead.
 const AFTERMATH: usize = 60;
-/// Frames over which the hips prepare for, and recover from, a long reach of a leg.
-const REACH_WINDOW: usize = 3;
 
 /// A clip and what was meant by it.
 pub struct Take {
@@ -55,27 +59,11 @@ pub fn perform(seed: u64, minutes: f32) -> (Vec<Clip>, Roles) {
 
 /// Synthetic locomotion with the plans behind its clips: see [`perform`].
 pub fn takes(seed: u64, minutes: f32) -> Vec<Take> {
-    lengths(seed, minutes)
+    lengths(&mut Random::new(seed, u64::MAX), minutes, CLIP_SECONDS)
         .into_par_iter()
         .enumerate()
         .map(|(index, frames)| take(seed, index, frames))
         .collect()
-}
-
-/// Frames of each clip; together they are exactly as long as requested.
-fn lengths(seed: u64, minutes: f32) -> Vec<usize> {
-    let mut random = Random::new(seed, u64::MAX);
-    let mut left = (minutes * 60.0 * RATE).round() as usize;
-    let mut lengths = Vec::new();
-    while left > 0 {
-        let drawn = (random.range(CLIP_SECONDS.0, CLIP_SECONDS.1) * RATE) as usize;
-        // A rest too short for a clip of its own is added to the last one.
-        let short = left < drawn + (CLIP_SECONDS.0 * RATE) as usize;
-        let frames = if short { left } else { drawn };
-        lengths.push(frames);
-        left -= frames;
-    }
-    lengths
 }
 
 fn take(seed: u64, index: usize, frames: usize) -> Take {
@@ -100,7 +88,7 @@ fn take(seed: u64, index: usize, frames: usize) -> Take {
         .iter()
         .map(|bearing| bearing.pelvis(&manner))
         .collect();
-    lower(&mut pelvis, &feet);
+    legs::lower(&mut pelvis, &feet);
 
     let mut rotations = Vec::with_capacity(frames * JOINTS);
     for ((bearing, feet), &pelvis) in bearings.iter().zip(&feet).zip(&pelvis) {
@@ -127,25 +115,6 @@ fn take(seed: u64, index: usize, frames: usize) -> Take {
     }
 }
 
-/// Lowers the hips, smoothly, wherever a loaded leg would not reach its foot.
-fn lower(pelvis: &mut [(Vec3, Quat)], feet: &[[FootState; 2]]) {
-    let needs: Vec<f32> = pelvis
-        .iter()
-        .zip(feet)
-        .map(|(&(position, rotation), feet)| {
-            let need = |side: usize| {
-                let span = position + rotation * figure::hip(side) - feet[side].ankle;
-                legs::overreach(span.y, span.x.hypot(span.z))
-            };
-            let loaded = (0..2).filter(|&side| feet[side].air == 0.0);
-            loaded.map(need).fold(0.0, f32::max)
-        })
-        .collect();
-    for ((position, _), by) in pelvis.iter_mut().zip(legs::envelope(&needs, REACH_WINDOW)) {
-        position.y -= by;
-    }
-}
-
 /// The local rotations of all joints at one frame.
 fn pose(
     bearing: &Bearing,
@@ -156,14 +125,6 @@ fn pose(
     let mut pose = [Quat::IDENTITY; JOINTS];
     pose[HIPS] = rotation;
     bearing.upper(manner, &mut pose);
-    for (side, foot) in feet.iter().enumerate() {
-        let hip = position + rotation * figure::hip(side);
-        let hinge = legs::hinge(rotation, foot.rotation);
-        let leg = legs::bend(hip, foot.ankle, hinge, foot.air);
-        pose[UP_LEG[side]] = rotation.inverse() * leg.thigh;
-        pose[LEG[side]] = leg.thigh.inverse() * leg.shin;
-        pose[FOOT[side]] = leg.shin.inverse() * foot.rotation;
-        pose[TOE[side]] = Quat::from_rotation_x(-foot.bend);
-    }
+    legs::join(position, feet, &mut pose);
     pose
 }
