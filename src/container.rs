@@ -214,7 +214,9 @@ impl Section {
             .partition(|(full, _)| own(full).is_some());
         self.arrays.0 = rest;
         let inner: Vec<(String, Vec<u8>)> = inner;
-        let inner = inner.into_iter().filter_map(|(full, bytes)| Some((own(&full)?, bytes)));
+        let inner = inner
+            .into_iter()
+            .filter_map(|(full, bytes)| Some((own(&full)?, bytes)));
         section.arrays.0 = inner.collect();
         section
     }

@@ -38,7 +38,8 @@ fn cases() -> Result<Vec<Case>> {
         for (preset, suffix) in [(Preset::Fast, ""), (Preset::Paper, ", paper")] {
             let config = task.config(preset);
             let spec = task.check(&config)?;
-            let networks = ActorCritic::new(&config.ppo.network, &spec.observation, spec.action, 1)?;
+            let networks =
+                ActorCritic::new(&config.ppo.network, &spec.observation, spec.action, 1)?;
             if !seen.contains(&networks) {
                 cases.push(Case {
                     name: format!("{}{suffix}", task.name),

@@ -108,7 +108,11 @@ impl Policy {
         let grid = observation.grid.unwrap_or([1; 3]);
         let action: usize = from.get("action")?;
         let values: usize = from.get("values")?;
-        if !possible(action) || !possible(values) || observation.vector > MAX_DIM || !grid.into_iter().all(possible) {
+        if !possible(action)
+            || !possible(values)
+            || observation.vector > MAX_DIM
+            || !grid.into_iter().all(possible)
+        {
             let message = format!(
                 "its observation {observation:?}, action {action} or values {values} cannot be"
             );

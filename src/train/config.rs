@@ -430,7 +430,12 @@ fn check_ppo(ppo: &Ppo) -> Result<(), ConfigError> {
     within("ppo.minibatch_size", ppo.minibatch_size, 1, 1 << 23)?;
     within("ppo.learning_rate", ppo.learning_rate, 1e-9, 1.0)?;
     within("ppo.final_lr_fraction", ppo.final_lr_fraction, 0.0, 1.0)?;
-    within("ppo.critic_learning_rate", ppo.critic_learning_rate, 0.0, 1.0)?;
+    within(
+        "ppo.critic_learning_rate",
+        ppo.critic_learning_rate,
+        0.0,
+        1.0,
+    )?;
     within("ppo.desired_kl", ppo.desired_kl, 0.0, 100.0)?;
     within("ppo.gamma", ppo.gamma, 0.0, 1.0)?;
     within("ppo.lambda", ppo.lambda, 0.0, 1.0)?;

@@ -206,7 +206,10 @@ pub fn penalty(
             slope = slope.mul(Tensor::from_inner(masks[below].clone()));
         }
     }
-    let loss = slope.square().sum().mul_scalar(f64::from(weight) / rows as f64);
+    let loss = slope
+        .square()
+        .sum()
+        .mul_scalar(f64::from(weight) / rows as f64);
     let gradients = loss.backward();
     values(leaf.grad(&gradients).expect("a gradient"))
 }

@@ -55,7 +55,8 @@ struct Outcome {
 
 impl Case {
     fn new(config: &NetworkConfig, observation: ObservationSpec, samples: usize) -> Case {
-        let networks = ActorCritic::new(config, &observation, ACTION, 1).expect("networks that fit");
+        let networks =
+            ActorCritic::new(config, &observation, ACTION, 1).expect("networks that fit");
         // Something is seen through the last layers, too.
         let begun = networks.init(5, -0.5, &[0.1; ACTION]);
         let noise = normal(networks.parameters(), 7).into_iter();

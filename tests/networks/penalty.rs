@@ -7,8 +7,8 @@ use crate::normal;
 use footwork::gpu::{Array, Device};
 use footwork::nn::layer::Activation;
 use footwork::nn::network::{Network, NetworkConfig};
-use footwork::nn::{Engine, EngineSize};
 use footwork::nn::observation::ObservationSpec;
+use footwork::nn::{Engine, EngineSize};
 
 const DIM: usize = 9;
 const ROWS: usize = 37;
@@ -29,7 +29,10 @@ fn network(hidden: &[usize], heads: usize) -> Network {
 }
 
 fn flat(network: &Network) -> Vec<f32> {
-    normal(network.span().len(), 3).iter().map(|value| 0.3 * value).collect()
+    normal(network.span().len(), 3)
+        .iter()
+        .map(|value| 0.3 * value)
+        .collect()
 }
 
 /// The gradient that the penalty adds, and the sum of squared norms.
@@ -58,7 +61,10 @@ fn added(device: &Device, network: &Network, samples: &[f32]) -> (Vec<f32>, f32)
     let gradient = gradient.read(device).expect("the device is there");
     let sums = sums.read(device).expect("the device is there");
     assert_eq!(sums[1], 3.0, "only the first sum is added to");
-    (gradient.iter().map(|value| value - 0.5).collect(), sums[0] - 2.0)
+    (
+        gradient.iter().map(|value| value - 0.5).collect(),
+        sums[0] - 2.0,
+    )
 }
 
 /// The gradient of the mean output with respect to a row, in f64, by the chain rule.
@@ -74,7 +80,9 @@ fn slope(network: &Network, flat: &[f64], row: &[f32]) -> Vec<f64> {
             (0..filters)
                 .map(|filter| {
                     let terms = of.iter().enumerate();
-                    let sum: f64 = terms.map(|(i, value)| value * weights[i * filters + filter]).sum();
+                    let sum: f64 = terms
+                        .map(|(i, value)| value * weights[i * filters + filter])
+                        .sum();
                     sum + if bias { biases[filter] } else { 0.0 }
                 })
                 .collect()
@@ -84,13 +92,21 @@ fn slope(network: &Network, flat: &[f64], row: &[f32]) -> Vec<f64> {
         let open = |filter: usize| !hidden || sums[filter] > 0.0;
         let masked = |of: Vec<f64>| -> Vec<f64> {
             let values = of.into_iter().enumerate();
-            values.map(|(filter, value)| if open(filter) { value } else { 0.0 }).collect()
+            values
+                .map(|(filter, value)| if open(filter) { value } else { 0.0 })
+                .collect()
         };
-        jacobian = jacobian.iter().map(|row| masked(taken(row, false))).collect();
-        values = masked(sums);
+        jacobian = jacobian
+            .iter()
+            .map(|row| masked(taken(row, false)))
+            .collect();
+        values = masked(sums.clone());
     }
     let heads = network.outputs() as f64;
-    jacobian.iter().map(|row| row.iter().sum::<f64>() / heads).collect()
+    jacobian
+        .iter()
+        .map(|row| row.iter().sum::<f64>() / heads)
+        .collect()
 }
 
 fn plain(network: &Network, flat: &[f64], samples: &[f32]) -> f64 {
@@ -107,10 +123,16 @@ fn it_is_that_of_central_differences() {
     let samples = normal(ROWS * (DIM + 1), 11);
     for (hidden, heads) in [(&[8, 6][..], 1), (&[7], 3), (&[], 2)] {
         let network = network(hidden, heads);
-        let wide: Vec<f64> = flat(&network).iter().map(|&value| f64::from(value)).collect();
+        let wide: Vec<f64> = flat(&network)
+            .iter()
+            .map(|&value| f64::from(value))
+            .collect();
         let (gradient, square) = added(&Device::Cpu, &network, &samples);
         let want = plain(&network, &wide, &samples);
-        assert!((f64::from(square) - want).abs() < 1e-4 * want, "{square} {want}");
+        assert!(
+            (f64::from(square) - want).abs() < 1e-4 * want,
+            "{square} {want}"
+        );
         let count = (ROWS - 2) as f64;
         for (at, got) in gradient.iter().enumerate() {
             let moved = |by: f64| {
@@ -120,7 +142,10 @@ fn it_is_that_of_central_differences() {
             };
             let slope = (moved(1e-7) - moved(-1e-7)) / 2e-7 * f64::from(WEIGHT) / count;
             let error = (f64::from(*got) - slope).abs();
-            assert!(error < 2e-4 * (1.0 + slope.abs()), "{hidden:?}, {at}: {got} instead of {slope}");
+            assert!(
+                error < 2e-4 * (1.0 + slope.abs()),
+                "{hidden:?}, {at}: {got} instead of {slope}"
+            );
         }
     }
 }
@@ -133,12 +158,17 @@ fn it_is_that_of_autodiff_and_the_same_on_a_gpu() {
         let network = network(hidden, heads);
         let (gradient, square) = added(&Device::Cpu, &network, &samples);
         let (on_gpu, gpu_square) = added(&crate::lavapipe(), &network, &samples);
-        let largest = gradient.iter().fold(0.0f32, |most, value| most.max(value.abs()));
+        let largest = gradient
+            .iter()
+            .fold(0.0f32, |most, value| most.max(value.abs()));
         assert!((square - gpu_square).abs() < 1e-4 * square);
         let oracle = autodiff::penalty(&network, &flat(&network), &samples, DIM + 1, 2, WEIGHT);
         for (at, got) in gradient.iter().enumerate() {
             for (name, want) in [("autodiff", oracle[at]), ("GPU", on_gpu[at])] {
-                assert!((got - want).abs() < 1e-4 * largest, "{name}, {at}: {got} {want}");
+                assert!(
+                    (got - want).abs() < 1e-4 * largest,
+                    "{name}, {at}: {got} {want}"
+                );
             }
         }
     }

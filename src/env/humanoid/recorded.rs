@@ -55,7 +55,9 @@ pub fn demonstrations(library: &MotionLibrary) -> Demonstrations {
     let mut weights = Vec::new();
     for (number, motion) in library.motions().iter().enumerate() {
         let times = (0..motion.frames).map(|frame| frame as f32 / motion.rate);
-        let times: Vec<f32> = times.filter(|time| time + DT <= motion.seconds() + 1e-4).collect();
+        let times: Vec<f32> = times
+            .filter(|time| time + DT <= motion.seconds() + 1e-4)
+            .collect();
         let weight = f64::from(library.share(number)) / times.len().max(1) as f64;
         weights.extend(times.iter().map(|_| weight));
         moments.extend(times.into_iter().map(|time| (number, time)));

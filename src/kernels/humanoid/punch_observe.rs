@@ -69,7 +69,13 @@ pub fn twin(
     let mut velocities = vec![0.0; 6 * (params.target_body as usize + 1)];
     let mut state = [0.0; PUNCH_STATE];
     for env in (0..envs).filter(|&env| params.only >> termination[env] & 1 == 1) {
-        gather(dynamics, envs, env, params.velocities_at as usize, &mut velocities);
+        gather(
+            dynamics,
+            envs,
+            env,
+            params.velocities_at as usize,
+            &mut velocities,
+        );
         gather(task_state, envs, env, 0, &mut state);
         let velocities: Vec<Spatial> = velocities.chunks_exact(6).map(spatial).collect();
         let row = &mut observation[params.at as usize + env * params.width as usize..];

@@ -95,7 +95,13 @@ pub fn twin(
     let mut touching = vec![0.0; 3 * params.own_bodies as usize];
     for env in 0..envs {
         let (mut state, mut measured) = ([0.0; PUNCH_STATE], [0.0; MEASURES]);
-        gather(dynamics, envs, env, params.velocities_at as usize, &mut velocities);
+        gather(
+            dynamics,
+            envs,
+            env,
+            params.velocities_at as usize,
+            &mut velocities,
+        );
         gather(forces, envs, env, 3 * bodies, &mut touching);
         gather(task_state, envs, env, 0, &mut state);
         let velocities: Vec<Spatial> = velocities.chunks_exact(6).map(spatial).collect();

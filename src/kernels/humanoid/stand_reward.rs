@@ -67,9 +67,7 @@ pub fn twin(
 
 /// Reward of a step that led to an uprightness and velocities `v`.
 pub fn reward(upright: f32, v: &[f32], params: &Params) -> f32 {
-    params.alive_reward
-        + params.upright_reward * upright
-        + params.stillness_reward * stillness(v)
+    params.alive_reward + params.upright_reward * upright + params.stillness_reward * stillness(v)
 }
 
 /// How far the torso's up axis points up: 1 upright, -1 upside down.

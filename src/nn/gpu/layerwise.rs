@@ -139,7 +139,12 @@ impl Layerwise {
         let span = network.span();
         let before: Tensor<1> = from_buffer(gpu, gradient.buffer(), [gradient.len()]);
         let mut parts = vec![before.clone().slice([0..span.start])];
-        parts.push(before.clone().slice([span.clone()]).add(Tensor::cat(own, 0)));
+        parts.push(
+            before
+                .clone()
+                .slice([span.clone()])
+                .add(Tensor::cat(own, 0)),
+        );
         parts.push(before.clone().slice([span.end..before.dims()[0]]));
         let parts = parts.into_iter().filter(|part| part.dims()[0] > 0);
         *gradient = Array::Gpu(to_buffer(Tensor::cat(parts.collect(), 0)));
@@ -224,7 +229,10 @@ impl Pass {
         let mut forward = backward[0].clone().mul_scalar(2.0 * weight / rows as f32);
         let mut parts = Vec::new();
         for (number, params) in network.layers().iter().enumerate() {
-            let own = forward.clone().transpose().matmul(backward[number + 1].clone());
+            let own = forward
+                .clone()
+                .transpose()
+                .matmul(backward[number + 1].clone());
             parts.push(own.flatten(0, 1));
             parts.push(part(flat, params.biases()).zeros_like());
             if let Some(activations) = self.inputs.get(number + 1) {

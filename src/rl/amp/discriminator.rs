@@ -256,7 +256,8 @@ impl Discriminator {
             &mut self.gradient,
         );
         let (rate, max) = (self.config.learning_rate, self.config.max_grad_norm);
-        self.adam.step(&mut self.parameters, &self.gradient, rate, max);
+        self.adam
+            .step(&mut self.parameters, &self.gradient, rate, max);
     }
 
     /// What the last update lost, and how often it was right, by their names in `metrics.jsonl`.

@@ -37,7 +37,10 @@ impl AmpLearner {
             (RewardSource::Task, amp.task_weight),
             (RewardSource::Style, amp.style_weight),
         ];
-        let rewards: Vec<_> = rewards.into_iter().filter(|(_, weight)| *weight > 0.0).collect();
+        let rewards: Vec<_> = rewards
+            .into_iter()
+            .filter(|(_, weight)| *weight > 0.0)
+            .collect();
         let samples = ppo.rollout_length * envs.spec().rows();
         Ok(AmpLearner {
             ppo: PpoLearner::with_rewards(ppo, envs, device, seed, &rewards)?,
@@ -70,7 +73,11 @@ impl Algorithm for AmpLearner {
         let mut iteration = self.ppo.conclude(envs, steps, begin, [policy_s, env_s])?;
         iteration.losses.push(("style_reward", self.style()?));
         iteration.losses.extend(self.discriminator.losses()?);
-        match iteration.losses.iter().find(|(_, value)| !value.is_finite()) {
+        match iteration
+            .losses
+            .iter()
+            .find(|(_, value)| !value.is_finite())
+        {
             None => Ok(iteration),
             Some((name, value)) => bail!(
                 "learning diverged: the {} is {value}; checkpoints are from before it, if one was due. Try a \
@@ -92,7 +99,8 @@ impl Algorithm for AmpLearner {
     }
 
     fn load(&mut self, from: &mut Section, policy: &Policy) -> Result<(), SectionError> {
-        self.discriminator.load(&mut from.take_section("discriminator"))?;
+        self.discriminator
+            .load(&mut from.take_section("discriminator"))?;
         self.ppo.load(from, policy)
     }
 }

@@ -44,9 +44,8 @@ impl Replay {
         let (count, capacity) = (windows.len() / self.dim, self.capacity());
         let at = (self.seen % capacity as u64) as usize;
         let first = count.min(capacity - at);
-        let part = |from: usize, to: usize| {
-            windows.copy(&self.device, from * self.dim..to * self.dim)
-        };
+        let part =
+            |from: usize, to: usize| windows.copy(&self.device, from * self.dim..to * self.dim);
         let parts = [(at, part(0, first)), (0, part(first, count))];
         for (at, part) in parts.into_iter().filter(|(_, part)| !part.is_empty()) {
             rows::replace(&self.device, &mut self.windows, at * self.dim, &part);
@@ -57,7 +56,10 @@ impl Replay {
     pub fn save(&self, to: &mut Section) -> Result<()> {
         to.put("replay.seen", self.seen);
         let filled = self.len() * self.dim;
-        to.put_array("replay.windows", &self.windows.read(&self.device)?[..filled]);
+        to.put_array(
+            "replay.windows",
+            &self.windows.read(&self.device)?[..filled],
+        );
         Ok(())
     }
 

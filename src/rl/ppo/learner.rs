@@ -185,12 +185,7 @@ impl PpoLearner {
     }
 
     /// Plays a rollout of a part, whose first row has the number `first` in the batch.
-    fn play(
-        &self,
-        env: &mut dyn VecEnv,
-        rollout: &mut Rollout,
-        first: usize,
-    ) -> Result<[f64; 2]> {
+    fn play(&self, env: &mut dyn VecEnv, rollout: &mut Rollout, first: usize) -> Result<[f64; 2]> {
         let (rows, action) = (rollout.spec.rows(), self.spec.action);
         let begin = Instant::now();
         let mut policy_fraction = 0.0;

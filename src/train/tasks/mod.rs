@@ -4,8 +4,8 @@ pub mod imitate;
 mod motions;
 pub mod obstacles;
 pub mod plane;
-pub mod punch;
 mod presets;
+pub mod punch;
 pub mod stand;
 
 use super::config::{Config, ConfigError, Preset, nearest};

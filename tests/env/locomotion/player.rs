@@ -51,7 +51,7 @@ impl Player {
         let specs = envs.parts.iter().map(|part| part.spec());
         Player {
             rollouts: specs
-                .map(|spec| Rollout::new(device, spec, steps))
+                .map(|spec| Rollout::new(device, spec, steps, 1))
                 .collect(),
             device: device.clone(),
             obstacles: config.task.obstacles(),

@@ -5,12 +5,12 @@
 mod punch;
 
 use crate::inputs::{Draw, POISON, SIZES, close, same};
+use end_episode::fields;
 use footwork::kernels::humanoid::{
     action_targets, draw_starts, end_episode, episode_sums, random_pushes, stand_reward,
 };
 use footwork::kernels::physics::smooth_dynamics::POSE_DIM;
 use footwork::kernels::termination::{FAILED, RUNNING, SUCCESS, TRUNCATED};
-use end_episode::fields;
 
 #[test]
 fn action_targets_agree() {

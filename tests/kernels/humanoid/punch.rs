@@ -178,7 +178,11 @@ fn punch_observations_agree() {
             close(form, observation, &forms.twin, |_| 1e-5);
         }
         let row = &forms.twin[4..34];
-        assert_eq!(row[dim], crate::inputs::POISON, "only its own numbers are written");
+        assert_eq!(
+            row[dim],
+            crate::inputs::POISON,
+            "only its own numbers are written"
+        );
         assert!(row[..dim].iter().all(|value| value.abs() < 100.0));
     }
     same("nothing", &[], &[]);
@@ -233,7 +237,10 @@ fn rewards_by_cases() {
     toppled.poses[3].rotation = Quat::from_rotation_y(1.5);
     let mut state = [0.0; PUNCH_STATE];
     let (hit, end, measures) = toppled.step(&mut state, &params);
-    assert_eq!((hit, end, measures[0], state[HIT_STEPS]), (1.4, RUNNING, 1.0, 1.0));
+    assert_eq!(
+        (hit, end, measures[0], state[HIT_STEPS]),
+        (1.4, RUNNING, 1.0, 1.0)
+    );
     // It goes on for the wanted time, and counts once.
     for step in 1..60 {
         let (hit, end, measures) = toppled.step(&mut state, &params);
@@ -273,7 +280,10 @@ fn far_rewards_as_printed_and_repaired() {
 fn facing_over_eight_headings() {
     let facing = |eighth: usize| {
         let alignment = (std::f32::consts::FRAC_PI_4 * eighth as f32).cos();
-        let params = punch_reward::Params { far: 0, ..params(1) };
+        let params = punch_reward::Params {
+            far: 0,
+            ..params(1)
+        };
         far_reward(0.0, Vec2::X, Vec2::X * 1.2, alignment, &params)
     };
     for eighth in 0..8 {
@@ -308,6 +318,10 @@ fn only_a_first_contact_of_a_fast_hand_is_a_fist() {
         world.poses[3].rotation = Quat::from_rotation_x(1.5);
         let (_, _, measures) = world.step(&mut state, &params);
         let want = f32::from(u8::from(fist));
-        assert_eq!((measures[0], measures[1]), (want, want), "{speed} m/s, body {body}");
+        assert_eq!(
+            (measures[0], measures[1]),
+            (want, want),
+            "{speed} m/s, body {body}"
+        );
     }
 }

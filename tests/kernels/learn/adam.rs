@@ -15,7 +15,13 @@ fn adam_agrees() {
         let v: Vec<f32> = some().into_iter().map(|value| value * value).collect();
         let mut norm_partials = vec![0.0; NORM_PARTIALS];
         grad_norm::twin(&gradient, &mut norm_partials);
-        let params = adam::Params::new(parameters, 3, 0.01, max_grad_norm, parameters / 3..parameters / 2);
+        let params = adam::Params::new(
+            parameters,
+            3,
+            0.01,
+            max_grad_norm,
+            parameters / 3..parameters / 2,
+        );
         let rates = [1.0, 0.25];
         let forms = forms!(
             adam, ADAM, groups(parameters), params;

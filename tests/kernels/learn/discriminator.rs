@@ -2,7 +2,7 @@
 //! Oracles: the twins; differences of the plain loss in f64; the rewards by hand.
 
 use super::network::agree;
-use crate::inputs::{Draw, SIZES, close, same};
+use crate::inputs::{Draw, close, same};
 use footwork::kernels::learn::{adapt_lr, discriminator_loss, style_reward, style_windows};
 use footwork::kernels::termination::{FAILED, RUNNING, TRUNCATED};
 
@@ -23,7 +23,9 @@ fn windows_agree() {
         let next = draw.normals(rows as usize * 11);
         let mut last = draw.normals((final_steps * rows) as usize * 11);
         // Some diverge.
-        last.iter_mut().step_by(13).for_each(|value| *value = f32::NAN);
+        last.iter_mut()
+            .step_by(13)
+            .for_each(|value| *value = f32::NAN);
         let ends = [RUNNING, RUNNING, TRUNCATED, RUNNING, FAILED];
         let termination: Vec<u32> = (0..samples).map(|sample| ends[sample % 5]).collect();
         let forms = forms!(
@@ -79,7 +81,10 @@ fn style_rewards_of_simple_cases() {
     assert!((reward(0.0, 0) - 2f32.ln()).abs() < 1e-6);
     assert!((reward(100.0, 0) + 1e-4f32.ln()).abs() < 1e-4);
     assert!(reward(-100.0, 0).abs() < 1e-6);
-    assert_eq!([-3.0, 0.25, 3.0].map(|out| reward(out, 1)), [-1.0, 0.25, 1.0]);
+    assert_eq!(
+        [-3.0, 0.25, 3.0].map(|out| reward(out, 1)),
+        [-1.0, 0.25, 1.0]
+    );
 }
 
 const DIM: usize = 3;
@@ -101,6 +106,8 @@ mod by_rows {
         params: &Params,
     ) {
         let heads = dims[2] as usize;
+        let rows = params.rows as usize;
+        let output_grads = &mut output_grads[..rows * heads];
         output_grads.copy_from_slice(outputs);
         let rows = output_grads.chunks_exact_mut(heads);
         for (row, (grads, extras)) in rows.zip(extras.chunks_exact_mut(SUMS)).enumerate() {
@@ -138,7 +145,11 @@ fn discriminator_losses_agree() {
         }
         // Against differences of the definition.
         let loss = |row: usize, out: f64| {
-            let sign = if samples[(START + row) * WIDTH + DIM] > 0.5 { -1.0 } else { 1.0 };
+            let sign = if samples[(START + row) * WIDTH + DIM] > 0.5 {
+                -1.0
+            } else {
+                1.0
+            };
             match hinge {
                 1 => (1.0 + sign * out).max(0.0),
                 _ => (1.0 + (sign * out).exp()).ln(),
@@ -151,7 +162,10 @@ fn discriminator_losses_agree() {
             }
             let slope = (loss(at / heads, out + 1e-6) - loss(at / heads, out - 1e-6)) / 2e-6;
             let want = slope / (rows * heads) as f64;
-            assert!((f64::from(*grad) - want).abs() < 1e-5 / rows as f64, "{at}: {grad} {want}");
+            assert!(
+                (f64::from(*grad) - want).abs() < 1e-5 / rows as f64,
+                "{at}: {grad} {want}"
+            );
         }
     }
 }

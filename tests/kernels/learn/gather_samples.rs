@@ -63,7 +63,11 @@ impl Case {
     fn widths(&self) -> [usize; 3] {
         let (observation, action) = (self.params.observation, self.params.action);
         let [observation, action] = [observation as usize, action as usize];
-        [observation, action, width(observation, action, self.streams())]
+        [
+            observation,
+            action,
+            width(observation, action, self.streams()),
+        ]
     }
 
     fn run(&self) -> Forms<Vec<f32>> {

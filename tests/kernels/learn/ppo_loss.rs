@@ -87,6 +87,7 @@ mod both {
         let log_std = &parameters[LOG_STD..];
         let (means, values) = output_grads.split_at_mut(rows * ACTION);
         let (answered, valued) = outputs.split_at(rows * ACTION);
+        let values = &mut values[..rows * VALUES];
         means.copy_from_slice(answered);
         values.copy_from_slice(valued);
         for row in 0..rows {
@@ -95,7 +96,15 @@ mod both {
             extras.fill(0.0);
             let mean = &mut means[row * ACTION..][..ACTION];
             let values = &mut values[row * VALUES..][..VALUES];
-            ppo_loss::actor(log_std, old_log_std, &[sample], mean, extras, VALUES, params);
+            ppo_loss::actor(
+                log_std,
+                old_log_std,
+                &[sample],
+                mean,
+                extras,
+                VALUES,
+                params,
+            );
             ppo_loss::critic(&[sample], values, extras, VALUES, params);
         }
     }
@@ -155,7 +164,10 @@ fn a_fixed_standard_deviation_has_no_gradient() {
     for (form, got) in case.run().all() {
         agree(&format!("grads, {form}"), &got.0, &grads);
         let rows = got.1.chunks_exact(ACTION + SUMS);
-        assert!(rows.flat_map(|row| &row[..ACTION]).all(|&grad| grad == 0.0), "{form}");
+        assert!(
+            rows.flat_map(|row| &row[..ACTION]).all(|&grad| grad == 0.0),
+            "{form}"
+        );
     }
 }
 

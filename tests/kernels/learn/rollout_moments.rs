@@ -201,7 +201,11 @@ fn one_of_two_streams_is_as_if_alone() {
     let alone = case.run();
     for ((form, got), (_, want)) in forms.all().into_iter().zip(alone.all()) {
         let (moments, scale): &Moments = got;
-        assert_eq!((&moments[..2], &moments[2..]), (&[7.0, 8.0][..], &want.0[..]), "{form}");
+        assert_eq!(
+            (&moments[..2], &moments[2..]),
+            (&[7.0, 8.0][..], &want.0[..]),
+            "{form}"
+        );
         assert!(scale[..8].iter().all(|&value| value == -1.0), "{form}");
         assert_eq!(scale[8..15], want.1[..7], "{form}");
     }

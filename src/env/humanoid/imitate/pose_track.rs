@@ -26,8 +26,11 @@ impl PoseTrack {
         let forward = root.rotation * Vec3::X;
         let turn = Quat::from_rotation_z(-forward.y.atan2(forward.x));
         let others = poses[bodies].iter().skip(1);
-        self.frames
-            .push(others.map(|pose| turn * (pose.position - root.position)).collect());
+        self.frames.push(
+            others
+                .map(|pose| turn * (pose.position - root.position))
+                .collect(),
+        );
     }
 
     /// Consecutive parts of so many frames; the rest is left out.
@@ -56,7 +59,9 @@ impl PoseTrack {
             let next = (0..length).map(|index| {
                 let before = match step {
                     0 => 0.0,
-                    _ => (0..3).map(|back| from(index, back)).fold(f64::INFINITY, f64::min),
+                    _ => (0..3)
+                        .map(|back| from(index, back))
+                        .fold(f64::INFINITY, f64::min),
                 };
                 before + apart(frame, &reference.frames[index])
             });

@@ -41,12 +41,7 @@ struct Params {
 impl PunchTask {
     /// The task, with start states that depend on `seed`, of a library of the humanoid alone. `joystick` says
     /// whether facing and moving are wanted apart.
-    pub fn new(
-        punch: &Punch,
-        joystick: bool,
-        library: &MotionLibrary,
-        seed: u32,
-    ) -> PunchTask {
+    pub fn new(punch: &Punch, joystick: bool, library: &MotionLibrary, seed: u32) -> PunchTask {
         let model = Arc::new(scenes::humanoid_and_box());
         PunchTask {
             punch: *punch,
@@ -258,14 +253,7 @@ impl GpuHumanoidTask for GpuPunch {
         );
     }
 
-    fn observe(
-        &self,
-        worlds: &TaskBuffers,
-        out: &Buffer<f32>,
-        at: usize,
-        width: usize,
-        only: u32,
-    ) {
+    fn observe(&self, worlds: &TaskBuffers, out: &Buffer<f32>, at: usize, width: usize, only: u32) {
         let params = punch_observe::Params {
             envs: worlds.ended.len() as u32,
             at: at as u32,

@@ -1,6 +1,7 @@
 //! What environments on both devices need to know: the model, the kernels' parameters.
 
-use super::{HumanoidTask, Moment};
+use super::humanoid_task::{COMMON_STATS, HumanoidTask, Moment};
+use super::rules::DT;
 use crate::env::humanoid::action::action_scale;
 use crate::env::humanoid::batch::{MAX_SPEED, SimulatorBatchConfig};
 use crate::env::spec::{EnvSpec, ObservationSpec};
@@ -32,7 +33,7 @@ pub fn spec(model: &Model, task_observation: usize, envs: usize) -> EnvSpec {
         },
         style: body,
         action: model.nu(),
-        dt: super::DT,
+        dt: DT,
         bootstrap: 1 << TRUNCATED | 1 << SUCCESS,
         bootstraps_often: true,
     }
@@ -69,7 +70,7 @@ impl Common {
             action_scale: action_scale(&model),
             characters: characters(&model),
             step_counter: 0,
-            measures: task.stat_names().len() - super::COMMON_STATS.len(),
+            measures: task.stat_names().len() - COMMON_STATS.len(),
             batch: SimulatorBatchConfig {
                 envs: envs.len(),
                 options: SolverOptions::fast(&model),

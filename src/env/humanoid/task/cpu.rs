@@ -1,7 +1,7 @@
 //! A task on all cores: each world plays its step from beginning to end while it is in the cache.
 
 use super::common::Common;
-use super::{HumanoidTask, Moment};
+use super::humanoid_task::{HumanoidTask, Moment};
 use crate::container::{Section, SectionError};
 use crate::env::humanoid::batch::{CpuSimulatorBatch, SimulatedWorld, SimulatorBatch};
 use crate::env::spec::EnvSpec;
@@ -202,7 +202,8 @@ impl VecEnv for CpuHumanoidEnv {
         let actions = action.host()[at..].chunks_exact(self.common.spec.action);
         let rewards = &mut out.reward.host_mut()[out.step * envs..][..envs];
         let terminations = &mut out.termination.host_mut()[out.step * envs..][..envs];
-        let finals = &mut out.final_observation.host_mut()[self.common.spec.final_row(out.step) * dim..];
+        let finals =
+            &mut out.final_observation.host_mut()[self.common.spec.final_row(out.step) * dim..];
         let finals = finals.chunks_exact_mut(dim);
         let observations = self.observation.chunks_exact_mut(dim);
         let rows = actions.zip(&mut self.episodes).zip(&mut self.task_states);

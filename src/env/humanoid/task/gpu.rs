@@ -1,7 +1,7 @@
 //! A task on a GPU: launches only, nothing copied to the host.
 
 use super::common::Common;
-use super::{GpuHumanoidTask, Moment, TaskBuffers};
+use super::humanoid_task::{GpuHumanoidTask, Moment, TaskBuffers};
 use crate::container::{Section, SectionError};
 use crate::env::humanoid::batch::GpuSimulatorBatch;
 use crate::env::spec::EnvSpec;

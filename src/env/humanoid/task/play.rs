@@ -1,6 +1,7 @@
 //! Whole episodes on the CPU, played by a policy's mean.
 
-use super::{CpuHumanoidEnv, DT};
+use super::cpu::CpuHumanoidEnv;
+use super::rules::DT;
 use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::Array;
 use crate::kernels::termination;

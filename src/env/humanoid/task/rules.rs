@@ -1,7 +1,10 @@
 //! Length and failures of an episode.
 
-use super::DT;
+use crate::physics::simulator::{STEP_RATE, SUBSTEPS};
 use serde::{Deserialize, Serialize};
+
+/// Length of a step, s.
+pub const DT: f32 = SUBSTEPS as f32 / STEP_RATE;
 
 /// How long an episode lasts, and when it has failed before.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,0 +1,138 @@
+//! What a task adds to a step of the physics.
+
+use super::rules::EpisodeRules;
+use crate::env::humanoid::batch::{GpuSimulatorBatch, SimulatedWorld};
+use crate::gpu::{Buffer, Gpu};
+use crate::kernels::termination;
+use crate::physics::model::Model;
+use crate::physics::simulator::Simulator;
+use std::sync::Arc;
+
+/// What the random numbers of a step depend on, besides the environment's number.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// Environments of the batch.
+    pub envs: u32,
+    /// Number of the first environment in the whole batch.
+    pub first: u32,
+    /// Seed of the run.
+    pub seed: u32,
+    /// Steps of the run so far.
+    pub step_counter: u32,
+}
+
+/// A task of a simulated body, which is the first tree of the model.
+///
+/// A world carries, besides the physics, [`HumanoidTask::state_dim`] numbers of the task's own. Episodes
+/// begin in one of the start states, as [`HumanoidTask::begin`] changes it.
+pub trait HumanoidTask: Send + Sync {
+    /// What every world simulates.
+    fn model(&self) -> &Arc<Model>;
+
+    /// Length and failures of an episode.
+    fn rules(&self) -> &EpisodeRules;
+
+    /// States in which episodes begin, `[n][nq + nv]`, each as likely.
+    fn start_states(&self) -> &[f32];
+
+    /// An action that keeps the body as it is, `[action]`.
+    fn rest_action(&self) -> Vec<f32>;
+
+    /// Names of the statistics: [`COMMON_STATS`], then the task's measures, which are summed over the steps
+    /// of an episode.
+    fn stat_names(&self) -> &'static [&'static str];
+
+    /// Ends that are successes, `1 << termination`: to be up at the end, unless the task says otherwise.
+    fn successes(&self) -> u32 {
+        1 << termination::TRUNCATED
+    }
+
+    /// Numbers that are observed besides the body's own, which come first.
+    fn observation(&self) -> usize {
+        0
+    }
+
+    /// Numbers that a world carries for the task.
+    fn state_dim(&self) -> usize {
+        0
+    }
+
+    /// Pairs of bodies whose forces on each other are wanted.
+    fn force_pairs(&self) -> Vec<[usize; 2]> {
+        Vec::new()
+    }
+
+    /// Acts on a world before its step.
+    fn act(&self, _env: usize, _moment: &Moment, _world: &mut SimulatedWorld) {}
+
+    /// Reward of a step, and how it ends for the task. `simulator` has the kinematics after the step;
+    /// `measures` are zero before.
+    fn reward(
+        &self,
+        _simulator: &Simulator,
+        _world: &SimulatedWorld,
+        _state: &mut [f32],
+        _measures: &mut [f32],
+    ) -> (f32, u32) {
+        (0.0, termination::RUNNING)
+    }
+
+    /// Begins an episode: changes the start state that was drawn, `[nq + nv]`, and sets the task's.
+    fn begin(&self, _env: usize, _moment: &Moment, _start: &mut [f32], _state: &mut [f32]) {}
+
+    /// Observes what the task adds.
+    fn observe(
+        &self,
+        _simulator: &Simulator,
+        _world: &SimulatedWorld,
+        _state: &[f32],
+        _out: &mut [f32],
+    ) {
+    }
+
+    /// The same on a GPU.
+    fn on_gpu(&self, gpu: &Gpu) -> Box<dyn GpuHumanoidTask>;
+}
+
+/// What a task adds to a step on a GPU: see [`HumanoidTask`]. Launches only.
+pub trait GpuHumanoidTask: Send {
+    /// Acts on the worlds before their step.
+    fn act(&self, _worlds: &TaskBuffers, _moment: &Moment) {}
+
+    /// Writes the step's rewards from the index `at` on, and measures and ends.
+    fn reward(&self, _worlds: &TaskBuffers, _reward: &Buffer<f32>, _at: usize, _moment: &Moment) {}
+
+    /// Changes the starts of the worlds whose step ended.
+    fn begin(&self, _worlds: &TaskBuffers, _moment: &Moment) {}
+
+    /// Observes what the task adds, of the worlds whose step ended as one of `only`, `1 << termination`:
+    /// from the index `at` on, a row each `width` numbers.
+    fn observe(
+        &self,
+        _worlds: &TaskBuffers,
+        _out: &Buffer<f32>,
+        _at: usize,
+        _width: usize,
+        _only: u32,
+    ) {
+    }
+}
+
+/// The worlds of a batch on a GPU, as tasks see them.
+pub struct TaskBuffers {
+    /// The device.
+    pub gpu: Gpu,
+    /// The physics.
+    pub batch: GpuSimulatorBatch,
+    /// The task's own numbers, `[state_dim][envs]`.
+    pub state: Buffer<f32>,
+    /// What the task measured of this step, `[measures][envs]`.
+    pub measures: Buffer<f32>,
+    /// How this step ends for the task, `[envs]`.
+    pub task_end: Buffer<u32>,
+    /// How it ended, `[envs]`.
+    pub ended: Buffer<u32>,
+}
+
+/// Statistics of every task.
+pub const COMMON_STATS: [&str; 5] = ["episodes", "successes", "steps", "returns", "fall"];
