@@ -9,6 +9,7 @@
 // measures    [4][envs]: 1 in the step of a hit; of a hit by a fist; far from the target; the angle there
 //             between facing and wanted facing, rad
 // task_end    [envs]
+// kind        [envs], from `at` on: 0 the target is far, 1 near, 2 it has been hit
 //
 // Equations are those of the paper, with `far` 0 as printed, 1 with a slower distance, 2 as a sum.
 
@@ -41,7 +42,8 @@ struct Params {
 @group(0) @binding(4) var<storage, read_write> reward: array<f32>;
 @group(0) @binding(5) var<storage, read_write> measures: array<f32>;
 @group(0) @binding(6) var<storage, read_write> task_end: array<u32>;
-@group(0) @binding(7) var<uniform> params: Params;
+@group(0) @binding(7) var<storage, read_write> kind: array<u32>;
+@group(0) @binding(8) var<uniform> params: Params;
 
 const TOPPLED = 0.2; // of the target's up axis along the world's
 
@@ -143,6 +145,7 @@ fn punch_reward(@builtin(global_invocation_id) id: vec3u) {
         near_reward(params.left_hand, toward, target_position));
     let far = far_reward(distance, way, velocity3(3u).xy, alignment);
     reward[params.at + env] = select(select(0.3 * far, 0.3 + 0.3 * hands, near), 1.4, hit);
+    kind[params.at + env] = select(select(0u, 1u, near), 2u, hit);
     let counts = !hit && !near;
     measures[env] = select(0.0, 1.0, toppled && before == 0.0);
     measures[e + env] = select(0.0, 1.0, toppled && before == 0.0 && by_fist);

@@ -9,7 +9,7 @@
 // next_value            [rows][streams]   of the observation after the last step
 // final_value           [steps][rows][streams]  of the final observation of an episode that ended there,
 //                                         or [rows][streams] if `final_steps` is 1
-// scale                 [streams][8]      mean and standard deviation that undo the normalisation come first
+// scale                 [streams][12]     mean and standard deviation that undo the normalisation come first
 // advantage_and_return  [2][steps][rows][streams]   in units of reward
 
 #import termination
@@ -35,7 +35,7 @@ struct Params {
 @group(0) @binding(6) var<storage, read_write> advantage_and_return: array<f32>;
 @group(0) @binding(7) var<uniform> params: Params;
 
-const FIELDS = 8u;
+const FIELDS = 12u;
 
 fn denormalized(value: f32) -> f32 {
     let at = FIELDS * params.stream;

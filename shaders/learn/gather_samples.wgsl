@@ -6,10 +6,9 @@
 // mean                  [samples][action]
 // log_prob_and_value    [samples], then [samples][streams]
 // advantage_and_return  [2][samples][streams]
-// scale                 [streams][8]              see rollout_moments
+// scale                 [streams][12]             see rollout_moments
 // rows                  [samples][observation + 2 action + 2 + 2 streams]   observation, action, mean, log
-//                       probability, the streams' normalised advantages by their weights, their
-//                       normalised returns, the critic's old outputs in the new normalisation
+//                       probability, the sum of the streams' advantages, their normalised returns, the critic's old outputs in the new normalisation
 
 struct Params {
     samples: u32,
@@ -29,8 +28,7 @@ struct Params {
 @group(0) @binding(8) var<uniform> params: Params;
 
 const LANES = 32u;
-const FIELDS = 8u;
-const MIN_STD = 1e-6;
+const FIELDS = 12u;
 
 @compute @workgroup_size(32)
 fn gather_samples(
@@ -58,7 +56,7 @@ fn gather_samples(
         let at = FIELDS * stream;
         let source = origin * streams + stream;
         let value = log_prob_and_value[n + source] * scale[at + 1u] + scale[at];
-        advantage += scale[at + 7u] * (advantage_and_return[source] - scale[at + 4u]) / (scale[at + 5u] + MIN_STD);
+        advantage += advantage_and_return[source];
         rows[scalars + 2u + stream] = (advantage_and_return[n * streams + source] - scale[at + 2u]) / scale[at + 3u];
         rows[scalars + 2u + streams + stream] = (value - scale[at + 2u]) / scale[at + 3u];
     }

@@ -150,6 +150,7 @@ struct Part {
     observation: Array,
     reward: Array,
     termination: Array<u32>,
+    group: Array<u32>,
     final_observation: Array,
 }
 
@@ -166,6 +167,7 @@ impl Part {
             observation: Array::zeroed(device, observation),
             reward: Array::zeroed(device, rows),
             termination: Array::zeroed(device, rows),
+            group: Array::zeroed(device, rows),
             final_observation: Array::zeroed(device, spec.final_steps(1) * observation),
         }
     }
@@ -176,6 +178,7 @@ impl Part {
             step: 0,
             reward: &mut self.reward,
             termination: &mut self.termination,
+            group: &mut self.group,
             final_observation: &mut self.final_observation,
         };
         self.env.step(&self.actions, self.step * of_step, out);

@@ -6,6 +6,8 @@ use crate::container::{Section, SectionError};
 use crate::gpu::Array;
 use anyhow::Result;
 
+pub use crate::kernels::learn::rollout_moments::GROUPS;
+
 /// The columns of a rollout that a step fills.
 pub struct Transition<'a> {
     /// Which step of the rollout this is, from 0.
@@ -14,6 +16,9 @@ pub struct Transition<'a> {
     pub reward: &'a mut Array,
     /// `[steps][rows]`, see [`crate::kernels::termination`].
     pub termination: &'a mut Array<u32>,
+    /// `[steps][rows]`: what kind of situation an agent is in, below [`GROUPS`]. Advantages of different
+    /// kinds are normalised apart. Environments that know one kind leave it at 0.
+    pub group: &'a mut Array<u32>,
     /// `[final_steps][rows][observation]`: the last observation of the episodes that this step ended
     /// and whose value goes on; a simulated body's, however it ended. The rows of others are left as they
     /// are.

@@ -25,6 +25,8 @@ pub struct Rollout {
     pub style_reward: Array,
     /// `[steps][rows]`, see [`crate::env::termination`].
     pub termination: Array<u32>,
+    /// `[steps][rows]`, see [`Transition::group`].
+    pub group: Array<u32>,
     /// `[final_steps][rows][observation]`
     pub final_observation: Array,
     /// `[rows][observation]`, after the last step.
@@ -49,6 +51,7 @@ impl Rollout {
             reward: zeros(samples),
             style_reward: zeros(samples),
             termination: Array::zeroed(device, samples),
+            group: Array::zeroed(device, samples),
             final_observation: zeros(spec.final_steps(steps) * rows * observation),
             next_observation: zeros(rows * observation),
             advantage_and_return: zeros(2 * streams * samples),
@@ -67,6 +70,7 @@ impl Rollout {
             step,
             reward: &mut self.reward,
             termination: &mut self.termination,
+            group: &mut self.group,
             final_observation: &mut self.final_observation,
         };
         env.step(&self.action, at, transition);

@@ -4,6 +4,7 @@
 use super::rollout::Rollout;
 use crate::container::{Section, SectionError};
 use crate::gpu::{Array, Device};
+use crate::kernels::learn::normalize_advantages;
 use crate::kernels::learn::rollout_moments::{Params, launch, scale, twin};
 use anyhow::Result;
 
@@ -57,10 +58,12 @@ impl ValueNormalizer {
             Device::Cpu => {
                 let values = joined(rollouts, |part| &part.log_prob_and_value, 1);
                 let returns = joined(rollouts, |part| &part.advantage_and_return, self.streams);
+                let groups: Vec<&[u32]> = rollouts.iter().map(|part| part.group.host()).collect();
+                let groups = groups.concat();
                 for stream in 0..self.streams {
                     let params = params(stream);
                     let (moments, scale) = (self.moments.host_mut(), self.scale.host_mut());
-                    twin(&values, &returns, moments, scale, &params);
+                    twin(&values, &returns, &groups, moments, scale, &params);
                 }
             }
             Device::Gpu(gpu) => {
@@ -69,11 +72,37 @@ impl ValueNormalizer {
                         gpu,
                         rollouts[0].log_prob_and_value.buffer(),
                         rollouts[0].advantage_and_return.buffer(),
+                        rollouts[0].group.buffer(),
                         self.moments.buffer(),
                         self.scale.buffer(),
                         &params(stream),
                     );
                 }
+            }
+        }
+    }
+
+    /// Normalises the advantages of rollouts that have been taken in, each group's apart, and weighs them.
+    pub fn normalize_advantages(&self, rollouts: &mut [Rollout]) {
+        for rollout in rollouts {
+            let params = normalize_advantages::Params {
+                samples: rollout.samples() as u32,
+                streams: self.streams as u32,
+            };
+            match &self.device {
+                Device::Cpu => normalize_advantages::twin(
+                    rollout.group.host(),
+                    self.scale.host(),
+                    rollout.advantage_and_return.host_mut(),
+                    &params,
+                ),
+                Device::Gpu(gpu) => normalize_advantages::launch(
+                    gpu,
+                    rollout.group.buffer(),
+                    self.scale.buffer(),
+                    rollout.advantage_and_return.buffer(),
+                    &params,
+                ),
             }
         }
     }

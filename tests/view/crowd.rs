@@ -38,6 +38,7 @@ fn step(batch: &mut EnvBatch, device: &Device) {
             step: 0,
             reward: &mut Array::zeroed(device, 1),
             termination: &mut Array::zeroed(device, 1),
+            group: &mut Array::zeroed(device, 1),
             final_observation: &mut Array::zeroed(device, spec.observation.dim()),
         },
     );

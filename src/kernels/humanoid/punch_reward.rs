@@ -56,7 +56,7 @@ const TOPPLED: f32 = 0.2;
 ///
 /// `poses` is `[bodies * 7][envs]`, `dynamics` as `smooth_dynamics` leaves it, both of the state after the
 /// step; `forces` `[(bodies + own_bodies) * 3][envs]`: on bodies, then of each body of the character on the
-/// target. `task_state` is `[PUNCH_STATE][envs]`; `reward` takes `[envs]` from `params.at` on, `measures`
+/// target. `task_state` is `[PUNCH_STATE][envs]`; `reward` and `group` take `[envs]` from `params.at` on, `measures`
 /// `[MEASURES][envs]`, `task_end` `[envs]`.
 pub fn launch(
     gpu: &Gpu,
@@ -67,13 +67,14 @@ pub fn launch(
     reward: &Buffer<f32>,
     measures: &Buffer<f32>,
     task_end: &Buffer<u32>,
+    group: &Buffer<u32>,
     params: &Params,
 ) {
     gpu.launch(
         &shader::PUNCH_REWARD,
         groups(&shader::PUNCH_REWARD, params.envs as usize),
         &[
-            poses, dynamics, forces, task_state, reward, measures, task_end,
+            poses, dynamics, forces, task_state, reward, measures, task_end, group,
         ],
         params,
     );
@@ -88,6 +89,7 @@ pub fn twin(
     reward: &mut [f32],
     measures: &mut [f32],
     task_end: &mut [u32],
+    group: &mut [u32],
     params: &Params,
 ) {
     let (envs, bodies) = (params.envs as usize, params.bodies as usize);
@@ -111,11 +113,12 @@ pub fn twin(
             velocities: &velocities,
             touching: &touching,
         };
-        let (gain, end) = step(&world, &mut state, &mut measured, params);
+        let (gain, end, kind) = step(&world, &mut state, &mut measured, params);
         scatter(task_state, envs, env, 0, &state);
         scatter(measures, envs, env, 0, &measured);
         reward[params.at as usize + env] = gain;
         task_end[env] = end;
+        group[params.at as usize + env] = kind;
     }
 }
 
@@ -138,13 +141,13 @@ impl Bodies<'_> {
     }
 }
 
-/// Reward of a step, and how it ends for the task.
+/// Reward of a step, how it ends for the task, and its group: the target is far, near, or has been hit.
 pub fn step(
     world: &Bodies,
     state: &mut [f32],
     measures: &mut [f32],
     params: &Params,
-) -> (f32, u32) {
+) -> (f32, u32, u32) {
     let target = world.poses[params.bodies as usize - 1];
     let root = world.poses[0];
     let up = (target.rotation * Vec3::Z).z;
@@ -184,7 +187,8 @@ pub fn step(
     let angle = alignment.clamp(-1.0, 1.0).acos();
     measures.copy_from_slice(&[is(new), is(new && by_fist), far, far * angle]);
     let over = hit && before + 1.0 > params.steps_after as f32;
-    (reward, if over { SUCCESS } else { RUNNING })
+    let group = if hit { 2 } else { u32::from(near) };
+    (reward, if over { SUCCESS } else { RUNNING }, group)
 }
 
 /// Remembers who touched the target first, and how fast the faster hand then was.

@@ -17,14 +17,10 @@ crate::shader_params! {
     }
 }
 
-/// Scalars at the end of a row: log probability, the streams' normalised advantages by their weights,
-/// their normalised returns, the critic's old outputs in the new normalisation.
+/// Scalars at the end of a row: log probability, the sum of the streams' advantages, their normalised returns, the critic's old outputs in the new normalisation.
 pub fn scalars(streams: usize) -> usize {
     2 + 2 * streams
 }
-
-/// Least standard deviation of the advantages.
-const MIN_STD: f32 = 1e-6;
 
 /// Numbers of a row: observation, action, mean, scalars.
 pub fn width(observation: usize, action: usize, streams: usize) -> usize {
@@ -105,9 +101,7 @@ pub fn twin(
         for (stream, scale) in scale.chunks_exact(scale::FIELDS).enumerate() {
             let [old_mean, old_std, new_mean, new_std] = std::array::from_fn(|i| scale[i]);
             let from = from * of + stream;
-            let centered = advantage[from] - scale[scale::ADVANTAGE_MEAN];
-            row_policy[1] +=
-                scale[scale::WEIGHT] * centered / (scale[scale::ADVANTAGE_STD] + MIN_STD);
+            row_policy[1] += advantage[from];
             row_values[stream] = (target[from] - new_mean) / new_std;
             row_values[of + stream] = (value[from] * old_std + old_mean - new_mean) / new_std;
         }

@@ -1,4 +1,4 @@
-//! Learning: [`sample_action`] draws actions, [`gae`] computes advantages. A discriminator sees
+//! Learning: [`sample_action`] draws actions, [`gae`] computes advantages, [`normalize_advantages`] makes them alike. A discriminator sees
 //! [`style_windows`], and gives the [`style_reward`]; [`discriminator_loss`] is its objective. The gradient of narrow dense
 //! networks, in order: [`forward`], an objective such as [`ppo_loss`], [`backward`], [`mod@gradient`],
 //! [`reduce_grads`]; [`network`] defines their memory layout. A step against any gradient: [`adapt_lr`],
@@ -14,6 +14,7 @@ pub mod gather_samples;
 pub mod grad_norm;
 pub mod gradient;
 pub mod network;
+pub mod normalize_advantages;
 pub mod ppo_loss;
 pub mod reduce_grads;
 pub mod rollout_moments;

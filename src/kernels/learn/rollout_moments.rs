@@ -15,6 +15,11 @@ crate::shader_params! {
     }
 }
 
+/// Kinds of situations whose advantages are normalised apart.
+pub const GROUPS: usize = 3;
+/// Least standard deviation of a group's advantages, of that of all groups together.
+const LEAST_OF_ALL: f64 = 0.2;
+
 /// Fields of `scale`.
 pub mod scale {
     /// Mean by which the critic's outputs of the rollout were normalised.
@@ -25,16 +30,16 @@ pub mod scale {
     pub const NEW_MEAN: usize = 2;
     /// Running standard deviation of the returns, with this rollout's taken in.
     pub const NEW_STD: usize = 3;
-    /// Mean of the advantages.
-    pub const ADVANTAGE_MEAN: usize = 4;
-    /// Standard deviation of the advantages.
-    pub const ADVANTAGE_STD: usize = 5;
     /// 1 - variance of the critic's error / variance of its target.
-    pub const EXPLAINED_VARIANCE: usize = 6;
+    pub const EXPLAINED_VARIANCE: usize = 4;
     /// Weight of the stream's advantages, which does not change.
-    pub const WEIGHT: usize = 7;
+    pub const WEIGHT: usize = 5;
+    /// Mean of the advantages, of each group.
+    pub const ADVANTAGE_MEAN: usize = 6;
+    /// Standard deviation of the advantages, of each group.
+    pub const ADVANTAGE_STD: usize = ADVANTAGE_MEAN + super::GROUPS;
     /// Number of fields.
-    pub const FIELDS: usize = 8;
+    pub const FIELDS: usize = ADVANTAGE_STD + super::GROUPS;
 }
 
 /// Least standard deviation of the returns.
@@ -46,11 +51,12 @@ const MIN_STD: f64 = 1e-3;
 /// `[2][samples][streams]`: the values normalised, advantages and returns in units of reward. `moments`,
 /// `[streams][2]`, are the running mean and mean square of the returns. `scale`,
 /// `[streams][scale::FIELDS]`, comes with the old mean and standard deviation, and leaves with all
-/// fields.
+/// fields. `group` is `[samples]`, below [`GROUPS`].
 pub fn launch(
     gpu: &Gpu,
     log_prob_and_value: &Buffer<f32>,
     advantage_and_return: &Buffer<f32>,
+    group: &Buffer<u32>,
     moments: &Buffer<f32>,
     scale: &Buffer<f32>,
     params: &Params,
@@ -58,7 +64,13 @@ pub fn launch(
     gpu.launch(
         &shader::ROLLOUT_MOMENTS,
         [1, 1, 1],
-        &[log_prob_and_value, advantage_and_return, moments, scale],
+        &[
+            log_prob_and_value,
+            advantage_and_return,
+            group,
+            moments,
+            scale,
+        ],
         params,
     );
 }
@@ -67,6 +79,7 @@ pub fn launch(
 pub fn twin(
     log_prob_and_value: &[f32],
     advantage_and_return: &[f32],
+    group: &[u32],
     moments: &mut [f32],
     scale: &mut [f32],
     params: &Params,
@@ -99,6 +112,16 @@ pub fn twin(
     scale[scale::NEW_STD] = spread.sqrt() as f32;
 
     let advantage = |i: usize| f64::from(advantage[i * of + stream]);
-    scale[scale::ADVANTAGE_MEAN] = mean(&advantage) as f32;
-    scale[scale::ADVANTAGE_STD] = variance(&advantage).sqrt() as f32;
+    let least = LEAST_OF_ALL * variance(&advantage).sqrt();
+    for kind in 0..GROUPS {
+        let own: Vec<f64> = (0..samples)
+            .filter(|&i| group[i] as usize == kind)
+            .map(advantage)
+            .collect();
+        let count = own.len().max(1) as f64;
+        let mean = own.iter().sum::<f64>() / count;
+        let variance = own.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / count;
+        scale[scale::ADVANTAGE_MEAN + kind] = mean as f32;
+        scale[scale::ADVANTAGE_STD + kind] = variance.sqrt().max(least) as f32;
+    }
 }

@@ -29,6 +29,7 @@ use feet::FootState;
 use figure::{HIPS, JOINTS};
 use glam::{Quat, Vec3};
 use lengths::lengths;
+use plan::Command;
 use random::Random;
 use rayon::prelude::*;
 use track::Track;
@@ -57,20 +58,43 @@ pub fn perform(seed: u64, minutes: f32) -> (Vec<Clip>, Roles) {
     (clips.collect(), figure::roles())
 }
 
+/// One clip of a steady, straight walk at so many metres a second.
+pub fn perform_walk(seed: u64, seconds: f32, speed: f32) -> (Vec<Clip>, Roles) {
+    // What comes before is setting off.
+    const BEFORE: usize = 60;
+    let frames = (seconds * RATE) as usize + BEFORE;
+    let walk = |planned: usize| plan::walk(planned as f32 / RATE, speed);
+    let mut clip = take(seed, 0, frames, |_, planned| walk(planned)).clip;
+    clip.positions.drain(..BEFORE);
+    clip.rotations.drain(..BEFORE * JOINTS);
+    clip.name = "synthetic_walk".to_string();
+    (vec![clip], figure::roles())
+}
+
 /// Synthetic locomotion with the plans behind its clips: see [`perform`].
 pub fn takes(seed: u64, minutes: f32) -> Vec<Take> {
     lengths(&mut Random::new(seed, u64::MAX), minutes, CLIP_SECONDS)
         .into_par_iter()
         .enumerate()
-        .map(|(index, frames)| take(seed, index, frames))
+        .map(|(index, frames)| {
+            take(seed, index, frames, |random, planned| {
+                plan::schedule(random, planned as f32 / RATE)
+            })
+        })
         .collect()
 }
 
-fn take(seed: u64, index: usize, frames: usize) -> Take {
+/// A take of so many frames; `commands` are drawn for so many frames, too.
+fn take(
+    seed: u64,
+    index: usize,
+    frames: usize,
+    commands: impl Fn(&mut Random, usize) -> Vec<Command>,
+) -> Take {
     let mut random = Random::new(seed, index as u64);
     let manner = Manner::draw(&mut random);
     let planned = frames + AFTERMATH;
-    let commands = plan::schedule(&mut random, planned as f32 / RATE);
+    let commands = commands(&mut random, planned);
     let track = Track::follow(&commands, planned);
     let rhythm = gait::Rhythm::of(&track, &mut random);
     let stances = footfall::stances(&track, &rhythm);

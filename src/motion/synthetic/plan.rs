@@ -51,6 +51,16 @@ pub fn schedule(random: &mut Random, seconds: f32) -> Vec<Command> {
     commands
 }
 
+/// Straight on for at least so many seconds, from rest.
+pub fn walk(seconds: f32, speed: f32) -> Vec<Command> {
+    let walk = Command {
+        seconds,
+        speed,
+        ..STAND
+    };
+    vec![walk]
+}
+
 /// The mix, weighted so that the time spent resembles recorded locomotion sets.
 fn draw(random: &mut Random) -> Command {
     let lot = random.range(0.0, 1.0);

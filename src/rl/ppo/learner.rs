@@ -297,7 +297,8 @@ impl PpoLearner {
     /// Takes gradient steps on the rollouts. The sums of the last epoch stay on the device.
     pub(in crate::rl) fn learn(&mut self) {
         self.value_normalizer.update(&self.rollouts);
-        let rollouts = std::mem::take(&mut self.rollouts);
+        let mut rollouts = std::mem::take(&mut self.rollouts);
+        self.value_normalizer.normalize_advantages(&mut rollouts);
         let device = self.device.clone();
         let mut batch = Batch::new(&device, &rollouts, self.value_normalizer.scale().clone());
         let samples = batch.samples();

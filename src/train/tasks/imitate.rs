@@ -1,6 +1,6 @@
 //! The task `imitate`: a simulated body moves like recordings, which a discriminator judges.
 
-use super::motions;
+use super::motions::{self, Performance};
 use super::presets::fast;
 use crate::env::humanoid::imitate::ImitateTask;
 use crate::env::humanoid::imitate::evaluate::{ImitateReport, evaluate};
@@ -82,7 +82,7 @@ fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
 fn load(config: &Config) -> Result<Loaded> {
     let rules = settings(&config.task.settings)?;
     let model = Arc::new(scenes::humanoid());
-    let (library, notes) = motions::load(config, &model)?;
+    let (library, notes) = motions::load(config, &model, Performance::Walk)?;
     let task = ImitateTraining {
         rules,
         library: Arc::new(library),

@@ -18,19 +18,33 @@ use std::sync::Arc;
 
 /// Frames that a clip needs at least: half a second, of which every window is one of two.
 const MIN_FRAMES: usize = 15;
-/// Minutes of the synthetic performer that a body is to move like, if there are no recordings.
+/// Minutes of the performer's locomotion, and of its boxing.
 const MINUTES: f32 = 2.0;
+/// Seconds of the performer's walk, and its speed, m/s.
+const WALK: [f32; 2] = [12.0, 1.2];
+
+/// What the built-in performer does where there are no recordings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Performance {
+    /// A steady walk.
+    Walk,
+    /// Locomotion of all kinds, and boxing as often.
+    Boxing,
+}
 
 /// Loads recordings of a model's body: a motion list, a folder or a file; without any, the synthetic
 /// performer's motion. The notes say what the user should know of them.
 ///
 /// # Errors
 /// They are missing or damaged, or of nobody that the body could move like.
-pub fn load(config: &Config, model: &Arc<Model>) -> Result<(MotionLibrary, Vec<String>)> {
+pub fn load(
+    config: &Config,
+    model: &Arc<Model>,
+    performance: Performance,
+) -> Result<(MotionLibrary, Vec<String>)> {
     let Some(path) = &config.data else {
-        let (clips, roles) = synthetic::perform(SYNTHETIC_SEED, MINUTES);
         let note = "no data given: synthetic motion of the built-in performer".to_string();
-        return Ok((MotionLibrary::of(&clips, &roles, model)?, vec![note]));
+        return Ok((performed(performance, model)?, vec![note]));
     };
     let list = MotionList::read(path, config.data_folder.as_deref())?;
     let options = MotionListOptions {
@@ -42,6 +56,20 @@ pub fn load(config: &Config, model: &Arc<Model>) -> Result<(MotionLibrary, Vec<S
     let mut notes = loaded.library.notes.clone();
     notes.extend(loaded.report.iter().map(line));
     Ok((loaded.library, notes))
+}
+
+/// The performer's motion in a model's body.
+fn performed(performance: Performance, model: &Arc<Model>) -> Result<MotionLibrary> {
+    if performance == Performance::Walk {
+        let [seconds, speed] = WALK;
+        let (clips, roles) = synthetic::perform_walk(SYNTHETIC_SEED, seconds, speed);
+        return Ok(MotionLibrary::of(&clips, &roles, model)?);
+    }
+    let (mut clips, roles) = synthetic::perform(SYNTHETIC_SEED, MINUTES);
+    let (boxing, _) = synthetic::perform_boxing(SYNTHETIC_SEED, MINUTES);
+    clips.extend(boxing);
+    // Both are as long: by their seconds, half of what is drawn is boxing.
+    Ok(MotionLibrary::of(&clips, &roles, model)?)
 }
 
 /// What came of a recording.

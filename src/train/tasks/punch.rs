@@ -2,7 +2,7 @@
 //! recordings.
 
 use super::imitate::ppo;
-use super::motions;
+use super::motions::{self, Performance};
 use crate::env::humanoid::punch::evaluate::{PunchReport, evaluate};
 use crate::env::humanoid::punch::{Punch, PunchTask};
 use crate::env::humanoid::task::{CpuHumanoidEnv, open, play, spec};
@@ -75,7 +75,7 @@ fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
 
 fn load(config: &Config) -> Result<Loaded> {
     let model = Arc::new(scenes::humanoid());
-    let (library, notes) = motions::load(config, &model)?;
+    let (library, notes) = motions::load(config, &model, Performance::Boxing)?;
     let task = PunchTraining {
         punch: settings(&config.task.settings)?,
         joystick: is_joystick(config),

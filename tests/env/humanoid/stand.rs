@@ -47,6 +47,7 @@ struct Rollout {
     device: Device,
     reward: Array,
     termination: Array<u32>,
+    group: Array<u32>,
     final_observation: Array,
     steps: usize,
 }
@@ -56,6 +57,7 @@ impl Rollout {
         let dim = OBSERVATION;
         Rollout {
             reward: Array::from_slice(device, &vec![POISON; steps * envs]),
+            group: Array::zeroed(device, steps * envs),
             termination: Array::from_slice(device, &vec![POISON.to_bits(); steps * envs]),
             final_observation: Array::from_slice(device, &vec![POISON; steps * envs * dim]),
             device: device.clone(),
@@ -73,6 +75,7 @@ impl Rollout {
             step: self.steps,
             reward: &mut self.reward,
             termination: &mut self.termination,
+            group: &mut self.group,
             final_observation: &mut self.final_observation,
         };
         envs.step(&action, 0, out);

@@ -118,6 +118,7 @@ impl Player {
                 step: self.step,
                 reward: &mut rollout.reward,
                 termination: &mut rollout.termination,
+                group: &mut rollout.group,
                 final_observation: &mut rollout.final_observation,
             };
             part.step(&column, at, transition);

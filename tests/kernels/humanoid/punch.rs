@@ -79,14 +79,15 @@ fn punch_rewards_agree() {
         let state = states(&mut draw, envs);
         let forms = forms!(
             punch_reward, PUNCH_REWARD, envs, params;
-            poses, dynamics, forces, mut state, out 3 + envs, out 4 * envs, mut vec![0u32; envs]
+            poses, dynamics, forces, mut state, out 3 + envs, out 4 * envs, mut vec![0u32; envs],
+            mut vec![7u32; 3 + envs]
         );
-        let twin: &(Vec<f32>, Vec<f32>, Vec<f32>, Vec<u32>) = &forms.twin;
+        let twin: &(Vec<f32>, Vec<f32>, Vec<f32>, Vec<u32>, Vec<u32>) = &forms.twin;
         for (form, got) in forms.shaders() {
             close(form, &got.0, &twin.0, |_| 1e-5);
             close(form, &got.1, &twin.1, |_| 1e-5);
             close(form, &got.2, &twin.2, |_| 1e-3);
-            assert_eq!(got.3, twin.3, "{form}");
+            assert_eq!((&got.3, &got.4), (&twin.3, &twin.4), "{form}");
         }
     }
 }
@@ -215,7 +216,8 @@ impl World {
             touching: &self.touching,
         };
         let mut measures = [0.0; 4];
-        let (reward, end) = step(&bodies, state, &mut measures, params);
+        let (reward, end, group) = step(&bodies, state, &mut measures, params);
+        assert!(group < 3 && (group == 2) == (state[HIT_STEPS] > 0.0));
         (reward, end, measures)
     }
 }

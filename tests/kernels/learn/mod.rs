@@ -9,6 +9,7 @@ mod gather_samples;
 mod grad_norm;
 mod gradient;
 mod network;
+mod normalize_advantages;
 mod ppo_loss;
 mod reduce_grads;
 mod rollout_moments;

@@ -35,6 +35,8 @@ fn root(of: Interval, least: f64) -> Interval {
     [low * (1.0 - UNIT), high * (1.0 + UNIT)]
 }
 
+/// Least standard deviation of a group's advantages, of that of all.
+const LEAST_OF_ALL: f64 = 0.2;
 const UNIT: f64 = f32::EPSILON as f64;
 
 impl Case {
@@ -67,13 +69,14 @@ impl Case {
         };
         let mut scale = [f32::NAN; scale::FIELDS];
         scale[scale::WEIGHT] = 0.25;
+        let group = vec![0u32; self.samples()];
         [scale[scale::OLD_MEAN], scale[scale::OLD_STD]] = self.old;
         forms!(
             rollout_moments, ROLLOUT_MOMENTS, [1, 1, 1], params;
             // Logarithms of densities are not looked at.
             [vec![f32::NAN; self.samples()], self.value.clone()].concat(),
             [&self.advantage[..], &self.returned].concat(),
-            mut self.moments, mut scale
+            group, mut self.moments, mut scale
         )
     }
 
@@ -147,15 +150,21 @@ impl Case {
         };
         let bar = 4.0 * UNIT * (square[1].abs() + largest);
         let new_std = root([square[0] - largest - bar, square[1] - least + bar], 1e-6);
+        let std = root(self.variance(&advantage, 0.0), 0.0);
         let scale = [
             about(old_mean, 0.0),
             about(old_std, 0.0),
             mean,
             new_std,
-            self.mean(&advantage),
-            root(self.variance(&advantage, 0.0), 0.0),
             explained.map(|end| end + UNIT * end.abs()),
             about(0.25, 0.0),
+            self.mean(&advantage),
+            // The other groups are empty: theirs is the least standard deviation.
+            about(0.0, 0.0),
+            about(0.0, 0.0),
+            std,
+            std.map(|end| LEAST_OF_ALL * end),
+            std.map(|end| LEAST_OF_ALL * end),
         ];
         ([mean, square], scale)
     }
@@ -189,14 +198,16 @@ fn one_of_two_streams_is_as_if_alone() {
         streams: 2,
         stream: 1,
     };
-    let mut scale = [-1.0; 2 * scale::FIELDS];
-    [scale[8 + scale::OLD_MEAN], scale[8 + scale::OLD_STD]] = case.old;
+    const F: usize = scale::FIELDS;
+    let mut scale = [-1.0; 2 * F];
+    [scale[F + scale::OLD_MEAN], scale[F + scale::OLD_STD]] = case.old;
+    scale[F + scale::WEIGHT] = 0.25;
     let moments = [7.0, 8.0, case.moments[0], case.moments[1]];
     let forms = forms!(
         rollout_moments, ROLLOUT_MOMENTS, [1, 1, 1], params;
         [vec![f32::NAN; 700], beside(&case.value)].concat(),
         [beside(&case.advantage), beside(&case.returned)].concat(),
-        mut moments, mut scale
+        vec![0u32; 700], mut moments, mut scale
     );
     let alone = case.run();
     for ((form, got), (_, want)) in forms.all().into_iter().zip(alone.all()) {
@@ -206,8 +217,63 @@ fn one_of_two_streams_is_as_if_alone() {
             (&[7.0, 8.0][..], &want.0[..]),
             "{form}"
         );
-        assert!(scale[..8].iter().all(|&value| value == -1.0), "{form}");
-        assert_eq!(scale[8..15], want.1[..7], "{form}");
+        assert!(scale[..F].iter().all(|&value| value == -1.0), "{form}");
+        assert_eq!(scale[F..], want.1[..], "{form}");
+    }
+}
+
+/// Kinds of situations have moments of their own, but for a least standard deviation.
+#[test]
+fn groups_are_apart() {
+    let group: Vec<u32> = (0..700).map(|i| [0, 0, 1, 2][i % 4]).collect();
+    let mut draw = Draw::new(8);
+    let advantage: Vec<f32> = group
+        .iter()
+        .map(|&kind| match kind {
+            0 => 5.0 + draw.normal(),
+            1 => -20.0 + 10.0 * draw.normal(),
+            _ => 3.0,
+        })
+        .collect();
+    let params = rollout_moments::Params {
+        samples: 700,
+        weight: 0.1,
+        streams: 1,
+        stream: 0,
+    };
+    let scale = [1.0f32; scale::FIELDS];
+    let forms = forms!(
+        rollout_moments, ROLLOUT_MOMENTS, [1, 1, 1], params;
+        vec![0.0f32; 1400], [advantage.clone(), vec![1.0; 700]].concat(), group,
+        mut [0.0f32, 1.0], mut scale
+    );
+    let deviation = |kind: Option<u32>| {
+        let own = advantage
+            .iter()
+            .zip(&group)
+            .filter(|(_, own)| kind.is_none_or(|kind| kind == **own));
+        let own: Vec<f64> = own.map(|(&advantage, _)| f64::from(advantage)).collect();
+        let mean = own.iter().sum::<f64>() / own.len() as f64;
+        let variance = own.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / own.len() as f64;
+        (mean, variance.sqrt())
+    };
+    let least = 0.2 * deviation(None).1;
+    for (form, (_, scale)) in forms.all() {
+        let scale: &Vec<f32> = scale;
+        for kind in 0..3 {
+            let (mean, std) = deviation(Some(kind));
+            let at = kind as usize;
+            let got = [
+                scale[scale::ADVANTAGE_MEAN + at],
+                scale[scale::ADVANTAGE_STD + at],
+            ];
+            for (got, want) in got.into_iter().zip([mean, std.max(least)]) {
+                assert!(
+                    (f64::from(got) - want).abs() < 1e-4 * want.abs(),
+                    "{form}, {kind}: {got} {want}"
+                );
+            }
+        }
     }
 }
 
@@ -258,7 +324,8 @@ fn two_samples_by_hand() {
         assert_eq!(moments[..], [1.0, 3.0], "{form}");
         assert_eq!(scale[..3], [0.5, 2.0, 1.0], "{form}");
         assert!((scale[scale::NEW_STD] - 2f32.sqrt()).abs() < 1e-6, "{form}");
-        assert_eq!(scale[4..6], [1.0, 3.0], "{form}");
+        assert_eq!(scale[scale::ADVANTAGE_MEAN], 1.0, "{form}");
+        assert_eq!(scale[scale::ADVANTAGE_STD], 3.0, "{form}");
         assert!(scale[scale::EXPLAINED_VARIANCE].abs() < 1e-6, "{form}");
     }
 }

@@ -8,7 +8,7 @@ pub mod evaluate;
 
 use super::batch::SimulatedWorld;
 use super::recorded::{mean_action, start_states};
-use super::task::{EpisodeRules, GpuHumanoidTask, HumanoidTask, Moment, TaskBuffers};
+use super::task::{EpisodeRules, GpuHumanoidTask, HumanoidTask, Moment, StepOutcome, TaskBuffers};
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::humanoid::punch_state::PUNCH_STATE;
 use crate::kernels::humanoid::{place_target, punch_observe, punch_reward};
@@ -188,13 +188,15 @@ impl HumanoidTask for PunchTask {
         world: &SimulatedWorld,
         state: &mut [f32],
         measures: &mut [f32],
-    ) -> (f32, u32) {
+    ) -> StepOutcome {
         let bodies = punch_reward::Bodies {
             poses: &simulator.poses,
             velocities: &simulator.velocities,
             touching: world.pair_forces(self.model.bodies.len()),
         };
-        punch_reward::step(&bodies, state, measures, &self.params.reward)
+        let (reward, end, group) =
+            punch_reward::step(&bodies, state, measures, &self.params.reward);
+        StepOutcome { reward, end, group }
     }
 
     fn begin(&self, env: usize, moment: &Moment, start: &mut [f32], state: &mut [f32]) {
@@ -224,7 +226,14 @@ struct GpuPunch {
 }
 
 impl GpuHumanoidTask for GpuPunch {
-    fn reward(&self, worlds: &TaskBuffers, reward: &Buffer<f32>, at: usize, moment: &Moment) {
+    fn reward(
+        &self,
+        worlds: &TaskBuffers,
+        reward: &Buffer<f32>,
+        group: &Buffer<u32>,
+        at: usize,
+        moment: &Moment,
+    ) {
         let params = punch_reward::Params {
             envs: moment.envs,
             at: at as u32,
@@ -239,6 +248,7 @@ impl GpuHumanoidTask for GpuPunch {
             reward,
             &worlds.measures,
             &worlds.task_end,
+            group,
             &params,
         );
     }

@@ -9,10 +9,11 @@ pub mod evaluate;
 use super::action::rest_action;
 use super::batch::SimulatedWorld;
 use super::starts::{START_STATES, start_states};
-use super::task::{DT, EpisodeRules, GpuHumanoidTask, HumanoidTask, Moment, TaskBuffers};
+use super::task::{
+    DT, EpisodeRules, GpuHumanoidTask, HumanoidTask, Moment, StepOutcome, TaskBuffers,
+};
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::humanoid::{random_pushes, stand_reward};
-use crate::kernels::termination;
 use crate::physics::model::Model;
 use crate::physics::scenes;
 use crate::physics::simulator::Simulator;
@@ -41,11 +42,13 @@ const PUSH_JITTER: u32 = 15;
 /// let mut final_observation = observation.clone();
 /// let mut reward = Array::zeroed(&Device::Cpu, spec.rows());
 /// let mut termination = Array::zeroed(&Device::Cpu, spec.rows());
+/// let mut group = termination.clone();
 /// for _ in 0..5 {
 ///     let out = Transition {
 ///         step: 0,
 ///         reward: &mut reward,
 ///         termination: &mut termination,
+///         group: &mut group,
 ///         final_observation: &mut final_observation,
 ///     };
 ///     envs.step(&action, 0, out);
@@ -159,12 +162,14 @@ impl HumanoidTask for StandTask {
         world: &SimulatedWorld,
         _state: &mut [f32],
         measures: &mut [f32],
-    ) -> (f32, u32) {
+    ) -> StepOutcome {
         let params = &self.params.reward;
         let torso = simulator.poses[params.torso as usize].rotation;
         measures[0] = stand_reward::uprightness(torso);
-        let reward = stand_reward::reward(measures[0], &world.state.v, params);
-        (reward, termination::RUNNING)
+        StepOutcome {
+            reward: stand_reward::reward(measures[0], &world.state.v, params),
+            ..StepOutcome::default()
+        }
     }
 
     fn on_gpu(&self, _: &Gpu) -> Box<dyn GpuHumanoidTask> {
@@ -184,7 +189,14 @@ impl GpuHumanoidTask for GpuStand {
         random_pushes::launch(&worlds.gpu, &worlds.batch.external_forces, &pushes);
     }
 
-    fn reward(&self, worlds: &TaskBuffers, reward: &Buffer<f32>, at: usize, moment: &Moment) {
+    fn reward(
+        &self,
+        worlds: &TaskBuffers,
+        reward: &Buffer<f32>,
+        _group: &Buffer<u32>,
+        at: usize,
+        moment: &Moment,
+    ) {
         let params = stand_reward::Params {
             envs: moment.envs,
             at: at as u32,

@@ -42,6 +42,7 @@ struct Row<'a> {
     task_state: &'a mut [f32],
     reward: &'a mut f32,
     termination: &'a mut u32,
+    group: &'a mut u32,
     final_observation: &'a mut [f32],
     observation: &'a mut [f32],
 }
@@ -153,14 +154,14 @@ impl Common {
         simulator.kinematics(&world.state.q, &world.state.v);
         let mut measures = vec![0.0; self.measures];
         let task = &self.task;
-        let (reward, task_end) = task.reward(simulator, world, row.task_state, &mut measures);
-        *row.reward = reward;
+        let outcome = task.reward(simulator, world, row.task_state, &mut measures);
+        (*row.reward, *row.group) = (outcome.reward, outcome.group);
         let step = end_episode::Step {
             q: &world.state.q,
             v: &world.state.v,
             poses: &simulator.poses,
             measures: &measures,
-            task_end,
+            task_end: outcome.end,
         };
         let end = end(&step, row.reward, row.episode, &params.end_episode);
         *row.termination = end;
@@ -202,17 +203,18 @@ impl VecEnv for CpuHumanoidEnv {
         let actions = action.host()[at..].chunks_exact(self.common.spec.action);
         let rewards = &mut out.reward.host_mut()[out.step * envs..][..envs];
         let terminations = &mut out.termination.host_mut()[out.step * envs..][..envs];
+        let groups = &mut out.group.host_mut()[out.step * envs..][..envs];
         let finals =
             &mut out.final_observation.host_mut()[self.common.spec.final_row(out.step) * dim..];
         let finals = finals.chunks_exact_mut(dim);
         let observations = self.observation.chunks_exact_mut(dim);
         let rows = actions.zip(&mut self.episodes).zip(&mut self.task_states);
-        let rows = rows.zip(rewards).zip(terminations);
+        let rows = rows.zip(rewards).zip(terminations.iter_mut().zip(groups));
         let rows = rows.zip(finals.zip(observations));
         let mut rows: Vec<Row> = rows
             .map(
                 |(
-                    ((((action, episode), task_state), reward), termination),
+                    ((((action, episode), task_state), reward), (termination, group)),
                     (last, observation),
                 )| Row {
                     action,
@@ -220,6 +222,7 @@ impl VecEnv for CpuHumanoidEnv {
                     task_state,
                     reward,
                     termination,
+                    group,
                     final_observation: last,
                     observation,
                 },

@@ -116,7 +116,8 @@ impl VecEnv for GpuHumanoidEnv {
         worlds.batch.advance();
         worlds.batch.kinematics();
         let at = out.step * self.common.spec.envs;
-        self.task.reward(worlds, out.reward.buffer(), at, &moment);
+        let (reward, group) = (out.reward.buffer(), out.group.buffer());
+        self.task.reward(worlds, reward, group, at, &moment);
         end_episode::launch(
             &worlds.gpu,
             &worlds.batch.state,

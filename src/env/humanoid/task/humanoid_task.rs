@@ -65,16 +65,15 @@ pub trait HumanoidTask: Send + Sync {
     /// Acts on a world before its step.
     fn act(&self, _env: usize, _moment: &Moment, _world: &mut SimulatedWorld) {}
 
-    /// Reward of a step, and how it ends for the task. `simulator` has the kinematics after the step;
-    /// `measures` are zero before.
+    /// What a step comes to. `simulator` has the kinematics after the step; `measures` are zero before.
     fn reward(
         &self,
         _simulator: &Simulator,
         _world: &SimulatedWorld,
         _state: &mut [f32],
         _measures: &mut [f32],
-    ) -> (f32, u32) {
-        (0.0, termination::RUNNING)
+    ) -> StepOutcome {
+        StepOutcome::default()
     }
 
     /// Begins an episode: changes the start state that was drawn, `[nq + nv]`, and sets the task's.
@@ -99,8 +98,16 @@ pub trait GpuHumanoidTask: Send {
     /// Acts on the worlds before their step.
     fn act(&self, _worlds: &TaskBuffers, _moment: &Moment) {}
 
-    /// Writes the step's rewards from the index `at` on, and measures and ends.
-    fn reward(&self, _worlds: &TaskBuffers, _reward: &Buffer<f32>, _at: usize, _moment: &Moment) {}
+    /// Writes the step's rewards and groups from the index `at` on, and measures and ends.
+    fn reward(
+        &self,
+        _worlds: &TaskBuffers,
+        _reward: &Buffer<f32>,
+        _group: &Buffer<u32>,
+        _at: usize,
+        _moment: &Moment,
+    ) {
+    }
 
     /// Changes the starts of the worlds whose step ended.
     fn begin(&self, _worlds: &TaskBuffers, _moment: &Moment) {}
@@ -132,6 +139,17 @@ pub struct TaskBuffers {
     pub task_end: Buffer<u32>,
     /// How it ended, `[envs]`.
     pub ended: Buffer<u32>,
+}
+
+/// What a step comes to for a task.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepOutcome {
+    /// Its reward.
+    pub reward: f32,
+    /// How it ends for the task, see [`termination`].
+    pub end: u32,
+    /// See [`Transition::group`](crate::env::Transition::group).
+    pub group: u32,
 }
 
 /// Statistics of every task.

@@ -13,6 +13,8 @@ mod rules;
 
 pub use common::{KEY_BODIES, characters, spec};
 pub use cpu::CpuHumanoidEnv;
-pub use humanoid_task::{COMMON_STATS, GpuHumanoidTask, HumanoidTask, Moment, TaskBuffers};
+pub use humanoid_task::{
+    COMMON_STATS, GpuHumanoidTask, HumanoidTask, Moment, StepOutcome, TaskBuffers,
+};
 pub use open::open;
 pub use rules::{DT, EpisodeRules, check_range};

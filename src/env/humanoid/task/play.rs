@@ -1,7 +1,7 @@
 //! Whole episodes on the CPU, played by a policy's mean.
 
 use super::cpu::CpuHumanoidEnv;
-use super::rules::DT;
+use super::rules::RATE;
 use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::Array;
 use crate::kernels::termination;
@@ -21,6 +21,7 @@ pub fn play(
     let mut observation = Array::Host(vec![0.0; count * dim]);
     let mut reward = Array::Host(vec![0.0; count]);
     let mut ends = Array::Host(vec![termination::RUNNING; count]);
+    let mut group = Array::Host(vec![0; count]);
     let mut last = Array::Host(vec![0.0; count * dim]);
     for _ in 0..envs.task().rules().steps() {
         envs.observe(&mut observation, 0);
@@ -29,6 +30,7 @@ pub fn play(
             step: 0,
             reward: &mut reward,
             termination: &mut ends,
+            group: &mut group,
             final_observation: &mut last,
         };
         envs.step(&action, 0, out);
@@ -99,5 +101,5 @@ pub fn record(envs: &mut CpuHumanoidEnv, policy: &MeanPolicy, name: &str) -> Mot
         }
         running
     });
-    MotionClip::new(name, envs.task().model(), 1.0 / DT, q)
+    MotionClip::new(name, envs.task().model(), RATE, q)
 }

@@ -3,8 +3,10 @@
 use crate::physics::simulator::{STEP_RATE, SUBSTEPS};
 use serde::{Deserialize, Serialize};
 
+/// Steps a second.
+pub const RATE: f32 = STEP_RATE / SUBSTEPS as f32;
 /// Length of a step, s.
-pub const DT: f32 = SUBSTEPS as f32 / STEP_RATE;
+pub const DT: f32 = 1.0 / RATE;
 
 /// How long an episode lasts, and when it has failed before.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
