@@ -142,6 +142,9 @@ pub enum ConfigError {
     /// A network that cannot be, or not for the task's observations.
     #[error("ppo.network.{0}")]
     Network(NetworkError),
+    /// A discriminator that cannot be.
+    #[error("amp.{0}")]
+    Discriminator(NetworkError),
     /// A name that no task has.
     #[error("there is no task `{name}`{hint}")]
     Task {

@@ -17,6 +17,7 @@ use crate::nn::{ActorCritic, Policy};
 use crate::physics::model::Model;
 use crate::physics::motion_clip::MotionClip;
 use crate::rl::Algorithm;
+use crate::rl::amp::discriminator::network;
 use crate::rl::ppo::PpoLearner;
 use anyhow::Result;
 use std::path::Path;
@@ -61,6 +62,9 @@ impl TaskEntry {
         config.check()?;
         let spec = (self.spec)(config)?;
         ActorCritic::new(&config.ppo.network, &spec.observation, spec.action, 1)?;
+        if let Some(amp) = &config.amp {
+            network(amp, 2 * spec.style).map_err(ConfigError::Discriminator)?;
+        }
         Ok(spec)
     }
 }

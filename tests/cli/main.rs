@@ -15,6 +15,7 @@ mod sim;
 mod stand;
 #[cfg(unix)]
 mod stopped;
+mod style;
 mod train;
 #[cfg(target_os = "linux")]
 mod window;

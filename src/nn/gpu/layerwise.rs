@@ -136,25 +136,11 @@ impl Layerwise {
         let flat = self.flat(parameters);
         let (pass, outputs) = Pass::new(network, &flat, self.observations(network, batch));
         let (own, square) = pass.penalty(network, &flat, outputs, weight);
-        let span = network.span();
-        let before: Tensor<1> = from_buffer(gpu, gradient.buffer(), [gradient.len()]);
-        let mut parts = vec![before.clone().slice([0..span.start])];
-        parts.push(
-            before
-                .clone()
-                .slice([span.clone()])
-                .add(Tensor::cat(own, 0)),
-        );
-        parts.push(before.clone().slice([span.end..before.dims()[0]]));
-        let parts = parts.into_iter().filter(|part| part.dims()[0] > 0);
-        *gradient = Array::Gpu(to_buffer(Tensor::cat(parts.collect(), 0)));
-        let before: Tensor<1> = from_buffer(gpu, sums.buffer(), [sums.len()]);
-        let first = before.clone().slice([0..1]).add(square);
-        let sum = match before.dims()[0] {
-            1 => first,
-            len => Tensor::cat(vec![first, before.slice([1..len])], 0),
-        };
-        *sums = Array::Gpu(to_buffer(sum));
+        let sum = self.flat(gradient);
+        let sum = part(&sum, network.span()).add(Tensor::cat(own, 0));
+        write(gpu, sum, gradient, network.span().start);
+        let sum = self.flat(sums);
+        write(gpu, sum.narrow(0, 0, 1).add(square), sums, 0);
     }
 
     fn flat(&self, parameters: &Array) -> Tensor<1> {

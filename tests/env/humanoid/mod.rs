@@ -1,1 +1,2 @@
 mod stand;
+mod style;

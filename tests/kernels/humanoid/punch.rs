@@ -58,6 +58,9 @@ fn states(draw: &mut Draw, envs: usize) -> Vec<f32> {
     states
 }
 
+/// State, rewards, measures, ends and groups.
+type Outputs = (Vec<f32>, Vec<f32>, Vec<f32>, Vec<u32>, Vec<u32>);
+
 #[test]
 fn punch_rewards_agree() {
     let mut draw = Draw::new(1);
@@ -82,7 +85,7 @@ fn punch_rewards_agree() {
             poses, dynamics, forces, mut state, out 3 + envs, out 4 * envs, mut vec![0u32; envs],
             mut vec![7u32; 3 + envs]
         );
-        let twin: &(Vec<f32>, Vec<f32>, Vec<f32>, Vec<u32>, Vec<u32>) = &forms.twin;
+        let twin: &Outputs = &forms.twin;
         for (form, got) in forms.shaders() {
             close(form, &got.0, &twin.0, |_| 1e-5);
             close(form, &got.1, &twin.1, |_| 1e-5);

@@ -1,0 +1,100 @@
+//! The tasks with a discriminator: trainings, their evaluation, and what they refuse.
+
+use super::{Place, keys, rows};
+use serde_json::Value;
+
+const SMALL: &str = "--device cpu --envs 16 --set ppo.rollout_length=8 --set ppo.minibatch_size=64 \
+                     --set amp.minibatch_size=32 --set amp.replay_capacity=256 \
+                     --set amp.replay_per_update=64 --set amp.steps=2";
+
+#[test]
+fn bodies_learn_a_style_and_are_evaluated() {
+    let place = Place::new();
+    for (task, own) in [
+        ("imitate", ["survival", "speed_ratio", "dtw_m", "coverage"]),
+        (
+            "punch",
+            ["survival", "hit_rate", "fist_rate", "time_to_hit_mean_s"],
+        ),
+        (
+            "joystick",
+            ["survival", "hit_rate", "facing_error_deg", "episodes"],
+        ),
+    ] {
+        let told = place.done(&format!("train {task} {SMALL} --steps 256 --out {task}"));
+        assert!(told.err.contains("synthetic motion"), "{told:?}");
+        assert!(place.path(task).join("learning_curve.png").exists());
+        for row in rows(&place.path(task)) {
+            for key in ["style_reward", "recorded_accuracy", "agent_accuracy"] {
+                assert!(keys(&row).contains(&key), "no {key} in {row}");
+            }
+        }
+        let found = place.done(&format!("eval {task} --episodes 4 --json")).out;
+        let found: Value = serde_json::from_str(&found).unwrap();
+        for key in own {
+            assert!(keys(&found).contains(&key), "no {key} in {found}");
+        }
+        place.done(&format!("render {task} --out {task}.png"));
+    }
+    place.refused(
+        "train punch --resume imitate --steps 512",
+        2,
+        &["is a run of the task `imitate`"],
+    );
+}
+
+#[test]
+fn a_style_goes_on_where_it_was() {
+    for task in ["imitate", "punch"] {
+        let place = Place::new();
+        place.done(&format!("train {task} {SMALL} --steps 768 --out whole"));
+        place.done(&format!("train {task} {SMALL} --steps 384 --out halves"));
+        place.done(&format!("train {task} --resume halves --steps 768"));
+        let [whole, halves] = ["whole", "halves"].map(|run| {
+            let path = place.path(run).join("checkpoints/last.ckpt");
+            let checkpoint = footwork::train::checkpoint::Checkpoint::load(&path);
+            checkpoint.unwrap().sections
+        });
+        assert!(whole == halves, "{task}");
+    }
+}
+
+#[test]
+fn what_a_style_cannot_be_is_refused() {
+    let place = Place::with_data();
+    std::fs::write(place.path("empty.toml"), "").unwrap();
+    std::fs::write(place.path("gone.toml"), "[[clip]]\nfile = \"gone.bvh\"\n").unwrap();
+    std::fs::write(
+        place.path("light.toml"),
+        "[[clip]]\nfile = \"gone.bvh\"\nweight = 0.0\n",
+    )
+    .unwrap();
+    for (rest, part) in [
+        ("--data empty.toml", "empty.toml"),
+        ("--data gone.toml", "gone.bvh"),
+        ("--data light.toml", "weight"),
+        ("--set amp.heads=0", "amp.heads is 0"),
+        ("--set amp.hidden=[5000]", "width 5000"),
+        ("--set amp.style_weight=0.0", "amp.style_weight is 0"),
+        ("--set amp.loss=square", "square"),
+        ("--set amp.head=3", "did you mean `amp.heads`"),
+    ] {
+        let words = format!("train imitate {SMALL} {rest} --out run");
+        let told = place.run(&words);
+        assert_ne!(told.code, Some(0), "{words}: {told:?}");
+        assert!(told.err.contains(part), "{words}: {told:?}");
+        assert!(!place.path("run").exists(), "{words} left a folder");
+    }
+    for (rest, part) in [
+        ("--set task.distance=[9.0,2.0]", "the smaller first"),
+        ("--set task.near_share=2.0", "near_share"),
+        ("--set task.far=somehow", "somehow"),
+    ] {
+        place.refused(&format!("train punch {SMALL} {rest} --out run"), 2, &[part]);
+    }
+    place.refused(
+        "train plane --set amp.heads=3 --out run",
+        2,
+        &["unknown key `amp`"],
+    );
+}

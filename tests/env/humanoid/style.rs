@@ -1,0 +1,204 @@
+//! The tasks `imitate`, `punch` and `joystick`.
+//! Oracle: the same environments on the other device, or from a saved state; recorded motion. Bar: equal bit
+//! for bit on one device; between devices what the physics' rounding grows to.
+
+use crate::support::inputs::{Draw, POISON, gpu};
+use footwork::container::Section;
+use footwork::env::humanoid::imitate::ImitateTask;
+use footwork::env::humanoid::punch::{Punch, PunchTask};
+use footwork::env::humanoid::recorded::{demonstrations, observe};
+use footwork::env::humanoid::task::{EpisodeRules, HumanoidTask, open};
+use footwork::env::{Transition, VecEnv, termination};
+use footwork::gpu::{Array, Device};
+use footwork::motion::synthetic::{perform_boxing, perform_walk};
+use footwork::physics::motion_library::MotionLibrary;
+use footwork::physics::scenes;
+use std::sync::{Arc, LazyLock};
+
+static LIBRARY: LazyLock<Arc<MotionLibrary>> = LazyLock::new(|| {
+    let model = Arc::new(scenes::humanoid());
+    let (mut clips, roles) = perform_walk(1, 6.0, 1.2);
+    clips.extend(perform_boxing(1, 0.4).0);
+    Arc::new(MotionLibrary::of(&clips, &roles, &model).expect("the performer fits the body"))
+});
+
+fn rules(episode_s: f32) -> EpisodeRules {
+    EpisodeRules {
+        episode_s,
+        ..EpisodeRules::default()
+    }
+}
+
+/// The three tasks, with episodes of so many seconds.
+fn tasks(episode_s: f32) -> [Arc<dyn HumanoidTask>; 3] {
+    let punch = Punch {
+        rules: rules(episode_s),
+        after_hit_s: 0.2,
+        ..Punch::default()
+    };
+    [
+        Arc::new(ImitateTask::new(&rules(episode_s), &LIBRARY, 3)),
+        Arc::new(PunchTask::new(&punch, false, &LIBRARY, 3)),
+        Arc::new(PunchTask::new(&punch, true, &LIBRARY, 3)),
+    ]
+}
+
+/// What some steps came to.
+#[derive(PartialEq, Debug)]
+struct Played {
+    observations: Vec<f32>,
+    rewards: Vec<f32>,
+    ends: Vec<u32>,
+    groups: Vec<u32>,
+    finals: Vec<f32>,
+}
+
+/// Plays steps of actions near the pose that the environments rest in.
+fn play(device: &Device, envs: &mut dyn VecEnv, steps: usize, seed: u32) -> Played {
+    let (spec, rest) = (*envs.spec(), envs.rest_action());
+    let (rows, dim) = (spec.rows(), spec.observation.dim());
+    let (mut reward, mut finals) = (
+        Array::zeroed(device, steps * rows),
+        Array::zeroed(device, steps * rows * dim),
+    );
+    let mut ends = Array::zeroed(device, steps * rows);
+    let mut groups = Array::zeroed(device, steps * rows);
+    let mut draw = Draw::new(seed);
+    let mut observations = Vec::new();
+    for step in 0..steps {
+        let mut seen = Array::from_slice(device, &vec![POISON; rows * dim]);
+        envs.observe(&mut seen, 0);
+        observations.extend(seen.read(device).unwrap());
+        let actions = std::iter::repeat_n(&rest, rows).flatten();
+        let actions: Vec<f32> = actions
+            .map(|action| action + 0.05 * draw.normal())
+            .collect();
+        let out = Transition {
+            step,
+            reward: &mut reward,
+            termination: &mut ends,
+            group: &mut groups,
+            final_observation: &mut finals,
+        };
+        envs.step(&Array::from_slice(device, &actions), 0, out);
+    }
+    Played {
+        observations,
+        rewards: reward.read(device).unwrap(),
+        ends: ends.read(device).unwrap(),
+        groups: groups.read(device).unwrap(),
+        finals: finals.read(device).unwrap(),
+    }
+}
+
+#[test]
+fn the_gpu_plays_what_the_cpu_plays() {
+    let (cpu, gpu) = (Device::Cpu, Device::from(gpu()));
+    for task in tasks(0.3) {
+        let [one, other] = [&cpu, &gpu].map(|device| {
+            let mut envs = open(device, task.clone(), 5..75, 3).unwrap();
+            play(device, envs.as_mut(), 8, 1)
+        });
+        assert_eq!(one.ends, other.ends);
+        assert!(one.ends.contains(&termination::TRUNCATED));
+        let close = |a: &[f32], b: &[f32]| {
+            for (at, (a, b)) in a.iter().zip(b).enumerate() {
+                // Speeds of joints are of the order of ten.
+                assert!((a - b).abs() < 3e-2 * (1.0 + a.abs()), "{at}: {a} {b}");
+            }
+        };
+        close(&one.observations, &other.observations);
+        close(&one.finals, &other.finals);
+        close(&one.rewards, &other.rewards);
+        assert_eq!(one.groups, other.groups);
+    }
+}
+
+#[test]
+fn a_saved_state_goes_on_as_if_nothing_had_happened() {
+    for device in [Device::Cpu, Device::from(gpu())] {
+        for task in tasks(0.5) {
+            let opened = || open(&device, task.clone(), 2..11, 5).unwrap();
+            let mut original = opened();
+            play(&device, original.as_mut(), 6, 2);
+            let mut section = Section::default();
+            original.save(&mut section).unwrap();
+            let mut restored = opened();
+            restored.load(&mut section).unwrap();
+            let [a, b] =
+                [original.as_mut(), restored.as_mut()].map(|envs| play(&device, envs, 6, 3));
+            assert!(a == b);
+        }
+    }
+}
+
+/// What an episode begins in is a recorded moment, but for the lift out of the ground: a discriminator could
+/// not tell them apart.
+#[test]
+fn a_reset_is_a_recorded_moment() {
+    let [imitate, ..] = tasks(10.0);
+    let mut envs = open(&Device::Cpu, imitate.clone(), 0..64, 1).unwrap();
+    let style = envs.spec().style;
+    let mut seen = Array::zeroed(&Device::Cpu, 64 * style);
+    envs.observe(&mut seen, 0);
+    let recorded = demonstrations(&LIBRARY);
+    assert_eq!(recorded.dim, 2 * style);
+    for row in seen.host().chunks_exact(style) {
+        let distance = |window: &[f32]| {
+            let pairs = row.iter().zip(window).skip(1);
+            pairs.map(|(a, b)| (a - b).abs()).fold(0.0f32, f32::max)
+        };
+        let windows = recorded.windows.chunks_exact(recorded.dim);
+        let nearest = windows.map(distance).fold(f32::INFINITY, f32::min);
+        // Starts are drawn between frames, too; fists are fast.
+        assert!(nearest < 6.0, "{nearest}");
+    }
+    // Start states have their own velocities: a moment seen at rest would be another.
+    let model = LIBRARY.model();
+    let start = &imitate.start_states()[..model.nq() + model.nv()];
+    let (q, v) = start.split_at(model.nq());
+    assert!(v.iter().any(|speed| speed.abs() > 0.1));
+    assert_ne!(
+        observe(model, q, v),
+        observe(model, q, &vec![0.0; model.nv()])
+    );
+}
+
+#[test]
+fn demonstrations_are_drawn_by_weight() {
+    let recorded = demonstrations(&LIBRARY);
+    let boundary = (6.0 * 30.0) as u32 - 1;
+    let share = LIBRARY.share(0);
+    let mut draw = Draw::new(4);
+    let walks = (0..20_000)
+        .filter(|_| recorded.draw(draw.bits()[0]) < boundary)
+        .count();
+    assert!(
+        (walks as f32 / 20_000.0 - share).abs() < 0.02,
+        "{walks} of 20000, {share}"
+    );
+    assert!(recorded.windows.iter().all(|value| value.is_finite()));
+}
+
+/// The box stands where it was put until somebody touches it.
+#[test]
+fn the_target_stands_by_itself() {
+    let punch = Punch {
+        near_share: 0.0,
+        distance: [5.0, 10.0],
+        ..Punch::default()
+    };
+    let task = Arc::new(PunchTask::new(&punch, false, &LIBRARY, 3));
+    let mut envs = open(&Device::Cpu, task, 0..32, 1).unwrap();
+    let played = play(&Device::Cpu, envs.as_mut(), 40, 6);
+    assert!(!played.ends.contains(&termination::SUCCESS));
+    assert!(
+        played.groups.iter().all(|&group| group == 0),
+        "far, and never hit"
+    );
+    let dim = envs.spec().observation.dim();
+    for row in played.observations.chunks_exact(dim) {
+        // Height of the box, and its up axis.
+        assert!((row[105 + 5] - 0.9).abs() < 0.01 && (row[105 + 12] - 1.0).abs() < 1e-3);
+    }
+}
