@@ -57,6 +57,7 @@ impl Place {
                 false => RunDir::create(Some(&out), entry.name)?,
             },
             device: &device,
+            start: None,
         };
         let from = begun.then(|| self.last(run));
         train(training, from, &AtomicBool::new(false), &mut ())

@@ -18,7 +18,7 @@ use footwork::train::task::Unsupported;
 use footwork::train::task::{Task, TaskEntry};
 use footwork::train::tasks::{REGISTRY, config_of, find};
 use footwork::train::trainer::{Training, train};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 #[derive(Args)]
@@ -44,6 +44,9 @@ pub struct Train {
     /// The run's folder [default: runs/TASK-N]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Begin with what another run of a simulated body has learned: its folder, or one of its checkpoints
+    #[arg(long, value_name = "RUN", conflicts_with = "resume")]
+    from: Option<PathBuf>,
     /// Go on with a run as if it had never stopped
     #[arg(long, value_name = "DIR", conflicts_with_all = ["data", "device", "envs", "seed", "preset", "config", "set", "out"])]
     resume: Option<PathBuf>,
@@ -141,6 +144,7 @@ impl Train {
             );
             return Err(Unsupported(why).into());
         }
+        let start = self.from.as_deref().map(begun).transpose()?;
         let from = match &resumed {
             Some(run) => Some(go_on(run, &config, &opened)?),
             None => None,
@@ -163,6 +167,7 @@ impl Train {
             task,
             run: &run,
             device,
+            start: start.as_ref(),
         };
         tell(training, &self.train(training, from, interrupted)?);
         Ok(())
@@ -267,6 +272,15 @@ impl Opened {
             spec,
         })
     }
+}
+
+/// The checkpoint that a new run begins with.
+fn begun(run: &Path) -> Result<Checkpoint> {
+    let path = match run.is_file() {
+        true => run.to_path_buf(),
+        false => RunDir::open(run)?.last()?,
+    };
+    Ok(Checkpoint::load(&path)?)
 }
 
 /// The configuration of a run that goes on with the task it has.

@@ -101,6 +101,21 @@ impl RunningMeanStd {
         }
     }
 
+    /// Moments in host memory of rows that go on behind these, as if only few rows had been seen: the new
+    /// columns are soon known.
+    pub fn widened(&self, dim: usize) -> RunningMeanStd {
+        const FEW: f64 = 10_000.0;
+        let (means, variances) = self.moments.host().split_at(self.dim);
+        let more = dim - self.dim;
+        let moments = [means, &vec![0.0; more], variances, &vec![1.0; more]].concat();
+        RunningMeanStd {
+            device: Device::Cpu,
+            moments: Array::Host(moments),
+            dim,
+            count: self.count.min(FEW),
+        }
+    }
+
     /// A copy of the moments in host memory.
     ///
     /// # Errors

@@ -44,6 +44,13 @@ pub trait Algorithm {
     /// The device was lost.
     fn policy(&self) -> Result<Policy>;
 
+    /// Begins with what another training has learned, whose observations are the first numbers of these:
+    /// its policy, and of its section what is of use.
+    ///
+    /// # Errors
+    /// It does not fit.
+    fn start_from(&mut self, policy: &Policy, section: &mut Section) -> Result<(), SectionError>;
+
     /// Saves all that learning needs to go on as if it had never stopped, but for the policy itself.
     ///
     /// # Errors

@@ -114,6 +114,7 @@ impl Comparison<'_> {
                 task: &*task,
                 run: &run,
                 device: self.device,
+                start: None,
             };
             train(training, from, interrupted, observer)?;
         }

@@ -92,6 +92,9 @@ pub enum CheckpointError {
         /// Name of the task at hand.
         wanted: String,
     },
+    /// A run that another cannot begin with.
+    #[error("the run cannot begin with the one given by --from: {0}")]
+    Start(String),
     /// A checkpoint of environments with other dimensions.
     #[error("{path} is of environments with {found}, not with {wanted}: start another run")]
     Spec {
@@ -222,6 +225,16 @@ impl Checkpoint {
             None => Ok(()),
             Some(key) => Err(CheckpointError::Changed { key }),
         }
+    }
+
+    /// Lets a fresh learner of another run begin with what this one has learned.
+    ///
+    /// # Errors
+    /// It does not fit.
+    pub fn start(&self, learner: &mut dyn Algorithm) -> Result<(), CheckpointError> {
+        let mut section = self.sections.get("learner").cloned().unwrap_or_default();
+        let started = learner.start_from(&self.policy, &mut section);
+        started.map_err(|error| CheckpointError::Start(error.0))
     }
 
     /// Puts the state back into a fresh learner and environments of the same configuration.

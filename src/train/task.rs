@@ -62,8 +62,17 @@ impl TaskEntry {
         config.check()?;
         let spec = (self.spec)(config)?;
         ActorCritic::new(&config.ppo.network, &spec.observation, spec.action, 1)?;
-        if let Some(amp) = &config.amp {
-            network(amp, 2 * spec.style).map_err(ConfigError::Discriminator)?;
+        match &config.amp {
+            Some(amp) => {
+                network(amp, 2 * spec.style).map_err(ConfigError::Discriminator)?;
+            }
+            None if config.ground || config.data_folder.is_some() => {
+                return Err(ConfigError::Settings(format!(
+                    "the task `{}` takes no motion list: leave out `ground` and `data_folder`",
+                    self.name
+                )));
+            }
+            None => {}
         }
         Ok(spec)
     }

@@ -37,6 +37,8 @@ pub struct Training<'a> {
     pub run: &'a RunDir,
     /// Where to train.
     pub device: &'a Device,
+    /// What a new run begins with, if not from nothing: a checkpoint of another.
+    pub start: Option<&'a Checkpoint>,
 }
 
 /// Trains until a limit, the wanted success or `interrupted`; with `from`, goes on where that checkpoint
@@ -88,11 +90,15 @@ impl<'a> Loop<'a> {
             task,
             run,
             device,
+            start,
         } = training;
         let mut envs = task.open(device, config.ppo.envs, config.seed)?;
         let mut learner = task.learner(config, &envs, device)?;
         let (mut steps, mut earlier_s, mut state) = (0, 0.0, TrainerState::default());
         let mut rows = Vec::new();
+        if let (Some(start), None) = (start, &from) {
+            start.start(&mut *learner)?;
+        }
         if let Some(checkpoint) = from {
             (steps, earlier_s) = (checkpoint.header.steps, checkpoint.header.wall_s);
             state = checkpoint.restore(&run.checkpoint("last"), &mut *learner, &mut envs)?;

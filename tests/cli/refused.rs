@@ -259,8 +259,7 @@ fn runs_of_older_versions_are_refused() {
     };
     let path = place.path("run/checkpoints/last.ckpt");
     container::save(&path, format, &"a header", &Arrays::default()).unwrap();
-    let part =
-        "last.ckpt was written by footwork 0.1 from before checkpoints had sections (format 3)";
+    let part = "last.ckpt was written by an earlier footwork 0.1 (format 3)";
     for words in ["eval run", "train plane --resume run --steps 10240"] {
         place.refused(words, 1, &[part]);
     }

@@ -59,10 +59,6 @@ fn choices_that_a_simulated_body_does_not_have_are_refused() {
             "--set task.min_push=20",
             "min_push must not exceed max_push",
         ),
-        (
-            "--set ppo.rollout_length=1000",
-            "ppo.rollout_length is 1000",
-        ),
         ("--watch", "--watch shows motion matching"),
     ] {
         place.refused(&format!("{TRAIN} {rest} --out run"), 2, &[part]);

@@ -36,6 +36,15 @@ fn bodies_learn_a_style_and_are_evaluated() {
         }
         place.done(&format!("render {task} --out {task}.png"));
     }
+    // What has learned to move begins a task, and only that.
+    place.done(&format!(
+        "train punch {SMALL} --steps 128 --from imitate --out begun"
+    ));
+    place.refused(
+        &format!("train punch {SMALL} --set ppo.network.hidden=[64] --from imitate --out wrong"),
+        1,
+        &["cannot begin with the one given by --from"],
+    );
     place.refused(
         "train punch --resume imitate --steps 512",
         2,
@@ -45,18 +54,16 @@ fn bodies_learn_a_style_and_are_evaluated() {
 
 #[test]
 fn a_style_goes_on_where_it_was() {
-    for task in ["imitate", "punch"] {
-        let place = Place::new();
-        place.done(&format!("train {task} {SMALL} --steps 768 --out whole"));
-        place.done(&format!("train {task} {SMALL} --steps 384 --out halves"));
-        place.done(&format!("train {task} --resume halves --steps 768"));
-        let [whole, halves] = ["whole", "halves"].map(|run| {
-            let path = place.path(run).join("checkpoints/last.ckpt");
-            let checkpoint = footwork::train::checkpoint::Checkpoint::load(&path);
-            checkpoint.unwrap().sections
-        });
-        assert!(whole == halves, "{task}");
-    }
+    let place = Place::new();
+    place.done(&format!("train punch {SMALL} --steps 768 --out whole"));
+    place.done(&format!("train punch {SMALL} --steps 384 --out halves"));
+    place.done("train punch --resume halves --steps 768");
+    let [whole, halves] = ["whole", "halves"].map(|run| {
+        let path = place.path(run).join("checkpoints/last.ckpt");
+        let checkpoint = footwork::train::checkpoint::Checkpoint::load(&path);
+        checkpoint.unwrap().sections
+    });
+    assert!(whole == halves);
 }
 
 #[test]
@@ -92,6 +99,11 @@ fn what_a_style_cannot_be_is_refused() {
     ] {
         place.refused(&format!("train punch {SMALL} {rest} --out run"), 2, &[part]);
     }
+    place.refused(
+        "train plane --ground --out run",
+        2,
+        &["takes no motion list"],
+    );
     place.refused(
         "train plane --set amp.heads=3 --out run",
         2,

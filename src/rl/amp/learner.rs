@@ -91,6 +91,12 @@ impl Algorithm for AmpLearner {
         self.ppo.policy()
     }
 
+    fn start_from(&mut self, policy: &Policy, section: &mut Section) -> Result<(), SectionError> {
+        self.ppo.start_from(policy, section)?;
+        self.discriminator
+            .load(&mut section.take_section("discriminator"))
+    }
+
     fn save(&self, to: &mut Section) -> Result<()> {
         let mut own = Section::default();
         self.discriminator.save(&mut own)?;

@@ -9,7 +9,7 @@ use crate::gpu::{Array, Device};
 use crate::kernels::learn::rollout_moments::scale;
 use crate::kernels::learn::{adapt_lr, sample_action};
 use crate::kernels::rng::permutation;
-use crate::nn::{ActorCritic, Adam, Engine, Policy, RunningMeanStd};
+use crate::nn::{ActorCritic, Adam, Engine, Network, Policy, RunningMeanStd};
 use crate::rl::gae::{Bootstrap, RewardSource, gae};
 use crate::rl::rollout::Rollout;
 use crate::rl::sample_action::sample_action;
@@ -454,6 +454,42 @@ impl PpoLearner {
     }
 }
 
+/// Copies the parameters of an actor into one whose observation begins as the other's, and goes on: what
+/// else it sees does not matter at first.
+///
+/// # Errors
+/// Their hidden layers or actions differ.
+fn adopt_actor(
+    from: &Network,
+    flat: &[f32],
+    to: &Network,
+    parameters: &mut [f32],
+) -> Result<(), SectionError> {
+    let widths = |network: &Network| -> Vec<usize> {
+        let layers = network.layers().iter();
+        layers.map(|params| params.layer.filters()).collect()
+    };
+    let (seen, sees) = (from.observation(), to.observation());
+    let fits = seen.grid.is_none() && sees.grid.is_none() && seen.vector <= sees.vector;
+    if !fits || widths(from) != widths(to) {
+        return Err(SectionError(format!(
+            "its policy of {} observations and layers of {:?} does not fit one of {} and {:?}",
+            seen.dim(),
+            widths(from),
+            sees.dim(),
+            widths(to)
+        )));
+    }
+    for (from, to) in from.layers().iter().zip(to.layers()) {
+        let weights = &flat[from.weights()];
+        let own = &mut parameters[to.weights()];
+        own.fill(0.0);
+        own[..weights.len()].copy_from_slice(weights);
+        parameters[to.biases()].copy_from_slice(&flat[from.biases()]);
+    }
+    Ok(())
+}
+
 impl Algorithm for PpoLearner {
     fn iterate(&mut self, envs: &mut EnvBatch, steps: u64) -> Result<Iteration> {
         let begin = Instant::now();
@@ -472,6 +508,23 @@ impl Algorithm for PpoLearner {
         policy.parameters = self.parameters.read(&self.device)?;
         policy.normalizer = normalizer.map(RunningMeanStd::on_host).transpose()?;
         Ok(policy)
+    }
+
+    fn start_from(&mut self, policy: &Policy, _: &mut Section) -> Result<(), SectionError> {
+        let lost = |error: anyhow::Error| SectionError(error.to_string());
+        let mut flat = self.parameters.read(&self.device).map_err(lost)?;
+        adopt_actor(
+            &policy.networks().actor,
+            &policy.parameters,
+            &self.networks.actor,
+            &mut flat,
+        )?;
+        flat[self.networks.log_std()].copy_from_slice(policy.log_std());
+        self.parameters = Array::from_slice(&self.device, &flat);
+        if let (Some(own), Some(other)) = (&mut self.observation_normalizer, &policy.normalizer) {
+            *own = other.widened(own.dim()).on(&self.device);
+        }
+        Ok(())
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {

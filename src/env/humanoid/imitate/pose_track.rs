@@ -33,9 +33,11 @@ impl PoseTrack {
         );
     }
 
-    /// Consecutive parts of so many frames; the rest is left out.
+    /// Consecutive parts of so many frames; one of less than a third of that is left out.
     pub fn stretches(&self, frames: usize) -> impl Iterator<Item = PoseTrack> {
-        self.frames.chunks_exact(frames).map(|frames| PoseTrack {
+        let parts = self.frames.chunks(frames);
+        let parts = parts.filter(move |part| 3 * part.len() >= frames);
+        parts.map(|frames| PoseTrack {
             frames: frames.to_vec(),
         })
     }
