@@ -58,7 +58,7 @@ fn the_lists_of_the_examples_load() {
         if name == "L17_B5" {
             let boxing = loaded.report.iter().filter(|clip| clip.kind == "boxing");
             let share: f32 = boxing.map(|clip| clip.share).sum();
-            assert!((share - 0.5).abs() < 1e-5, "{share}");
+            assert!((share - 0.5).abs() < 1e-3, "{share}");
         }
     }
 }
