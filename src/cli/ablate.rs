@@ -60,6 +60,7 @@ impl Ablate {
         let mut config = self.choices.config(entry)?;
         let Opened { device, task, .. } = Opened::new(entry, &mut config)?;
         let out = self.out.unwrap_or_else(|| ablation.folder.into());
+        let start = self.choices.start()?;
         let comparison = Comparison {
             entry,
             ablation,
@@ -67,6 +68,7 @@ impl Ablate {
             task: &*task,
             device: &device,
             out: &out,
+            start: start.as_ref(),
         };
         let mut progress = Progress::new(&config);
         let outcomes = comparison.run(self.seeds, interrupted, &mut progress)?;

@@ -8,6 +8,8 @@ use footwork::gpu::Gpu;
 use footwork::nn::Policy;
 use footwork::playback::player::Style;
 use footwork::playback::stitch::Stitching;
+use footwork::view::body_film::BodyFilm;
+use footwork::view::camera::FOLLOW;
 use footwork::view::debug_draw::scene;
 use footwork::view::image_files::{self, Output};
 use footwork::view::playthrough::{Playthrough, PlaythroughContext};
@@ -18,14 +20,12 @@ use std::path::PathBuf;
 
 /// Frames of the motion a second.
 const RATE: u32 = 30;
-/// Fraction of the way to the character that the camera covers in a frame.
-const FOLLOW: f32 = 0.2;
 
 #[derive(Args)]
 pub struct Render {
     /// A run's folder, whose last checkpoint is shown, or one of its checkpoints
     run: PathBuf,
-    /// FILE.png for one picture (of a simulated body: a film strip), FILE.gif for an animation, a
+    /// FILE.png for one picture (of a simulated body: a film strip of --seconds), FILE.gif for an animation, a
     /// folder's name for PNG frames
     #[arg(short, long, value_name = "FILE|DIR")]
     out: PathBuf,
@@ -133,13 +133,13 @@ impl Render {
         let policy = run.checkpoint(&run.path)?.policy;
         let gpu = Gpu::drawing()?;
         if let Some((model, motion)) = run.task.motion(&policy, self.episode as u32) {
-            let Output::Png(path) = &output else {
-                let why = "a simulated body is drawn as a film strip: --out must end in .png";
-                return Err(Usage(why.into()).into());
-            };
-            film_strip(&gpu, &model, &motion, path)?;
-            println!("{}", path.display());
-            return Ok(());
+            if let Output::Png(path) = &output {
+                film_strip(&gpu, &model, &motion, [self.start, self.seconds], path)?;
+                println!("{}", path.display());
+                return Ok(());
+            }
+            let mut film = BodyFilm::new(&gpu, &model, &motion, self.camera(), self.size);
+            return self.write(&output, &mut film);
         }
         let locomotion = run.locomotion("render")?;
         let (matcher, task) = (locomotion.matcher.clone(), locomotion.task);
@@ -148,20 +148,29 @@ impl Render {
             playthrough: Playthrough::new(&context, self.episode),
             policy,
             context,
-            camera: Camera {
-                yaw: self.yaw.to_radians(),
-                pitch: self.pitch.to_radians(),
-                distance: self.distance,
-                ..Camera::default()
-            },
+            camera: self.camera(),
             renderer: Renderer::new(&gpu),
             target: RenderTarget::new(&gpu.setup.device, self.size),
         };
         film.camera.follow(film.playthrough.shown.at, 1.0);
+        self.write(&output, &mut film)
+    }
+
+    fn camera(&self) -> Camera {
+        Camera {
+            yaw: self.yaw.to_radians(),
+            pitch: self.pitch.to_radians(),
+            distance: self.distance,
+            ..Camera::default()
+        }
+    }
+
+    /// Writes the film from its start on, for as long as it is to be.
+    fn write(&self, output: &Output, film: &mut dyn Filmed) -> Result<()> {
         film.skip((self.start * RATE as f32).round() as usize)?;
         let count = ((self.seconds * self.rate as f32).round() as usize).max(1);
         let between = (RATE / self.rate) as usize;
-        match &output {
+        match output {
             Output::Png(path) => image_files::png(path, self.size, &film.picture()?)?,
             Output::Gif(path) => {
                 let mut frames = Vec::with_capacity(count);
@@ -246,7 +255,26 @@ struct Film {
     target: RenderTarget,
 }
 
-impl Film {
+/// Something that goes on frame by frame before a camera.
+trait Filmed {
+    /// Goes on by so many frames.
+    fn skip(&mut self, frames: usize) -> Result<()>;
+    /// The present frame, RGB.
+    fn picture(&mut self) -> Result<Vec<u8>>;
+}
+
+impl Filmed for BodyFilm<'_> {
+    fn skip(&mut self, frames: usize) -> Result<()> {
+        self.skip(frames);
+        Ok(())
+    }
+
+    fn picture(&mut self) -> Result<Vec<u8>> {
+        self.picture()
+    }
+}
+
+impl Filmed for Film {
     fn skip(&mut self, frames: usize) -> Result<()> {
         for _ in 0..frames {
             self.playthrough.advance(&self.context, &self.policy)?;

@@ -18,7 +18,7 @@ use footwork::train::task::Unsupported;
 use footwork::train::task::{Task, TaskEntry};
 use footwork::train::tasks::{REGISTRY, config_of, find};
 use footwork::train::trainer::{Training, train};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 #[derive(Args)]
@@ -44,11 +44,8 @@ pub struct Train {
     /// The run's folder [default: runs/TASK-N]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Begin with what another run of a simulated body has learned: its folder, or one of its checkpoints
-    #[arg(long, value_name = "RUN", conflicts_with = "resume")]
-    from: Option<PathBuf>,
     /// Go on with a run as if it had never stopped
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["data", "device", "envs", "seed", "preset", "config", "set", "out"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["data", "device", "envs", "seed", "preset", "config", "set", "out", "from"])]
     resume: Option<PathBuf>,
     /// Do not reward requests of positions outside obstacles: --set task.hit_reward=0
     #[arg(long, conflicts_with = "resume", help_heading = "Among obstacles")]
@@ -80,6 +77,9 @@ pub struct Choices {
     /// Bring recordings whose feet stand off the ground to it, for simulated bodies
     #[arg(long)]
     ground: bool,
+    /// Begin with what another run of a simulated body has learned: its folder, or one of its checkpoints
+    #[arg(long, value_name = "RUN")]
+    from: Option<PathBuf>,
     /// Where to run: a real GPU if there is one, else the CPU [default: auto]
     #[arg(long, value_enum)]
     device: Option<Choice>,
@@ -144,7 +144,7 @@ impl Train {
             );
             return Err(Unsupported(why).into());
         }
-        let start = self.from.as_deref().map(begun).transpose()?;
+        let start = self.choices.start()?;
         let from = match &resumed {
             Some(run) => Some(go_on(run, &config, &opened)?),
             None => None,
@@ -213,6 +213,18 @@ impl Train {
 }
 
 impl Choices {
+    /// The checkpoint that a new run begins with.
+    pub fn start(&self) -> Result<Option<Checkpoint>> {
+        let Some(run) = &self.from else {
+            return Ok(None);
+        };
+        let path = match run.is_file() {
+            true => run.clone(),
+            false => RunDir::open(run)?.last()?,
+        };
+        Ok(Some(Checkpoint::load(&path)?))
+    }
+
     /// Preset, changed by the file, changed by the options.
     pub fn config(&self, entry: &TaskEntry) -> Result<Config> {
         let preset = self.preset.unwrap_or_default();
@@ -272,15 +284,6 @@ impl Opened {
             spec,
         })
     }
-}
-
-/// The checkpoint that a new run begins with.
-fn begun(run: &Path) -> Result<Checkpoint> {
-    let path = match run.is_file() {
-        true => run.to_path_buf(),
-        false => RunDir::open(run)?.last()?,
-    };
-    Ok(Checkpoint::load(&path)?)
 }
 
 /// The configuration of a run that goes on with the task it has.

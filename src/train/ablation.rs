@@ -31,6 +31,8 @@ pub struct Comparison<'a> {
     pub device: &'a Device,
     /// Folder of all runs.
     pub out: &'a Path,
+    /// What all variants begin with, if not from nothing.
+    pub start: Option<&'a Checkpoint>,
 }
 
 /// One variant's training from one seed.
@@ -114,7 +116,7 @@ impl Comparison<'_> {
                 task: &*task,
                 run: &run,
                 device: self.device,
-                start: None,
+                start: self.start,
             };
             train(training, from, interrupted, observer)?;
         }

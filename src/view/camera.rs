@@ -14,6 +14,9 @@ pub const PITCH: [f32; 2] = [0.02, 1.55];
 /// Distances, m.
 pub const DISTANCE: [f32; 2] = [0.5, 2000.0];
 
+/// Fraction of the way to a character that a camera in a film or a window covers in a frame.
+pub const FOLLOW: f32 = 0.2;
+
 /// A camera on a sphere around the point it looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {

@@ -1,6 +1,7 @@
 //! Pictures of what a character does: a scene in plain data, and the renderer that draws it into a
 //! texture, for a window or for a file.
 
+pub mod body_film;
 pub mod camera;
 pub mod capsule_rig;
 pub mod crowd;

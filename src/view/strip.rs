@@ -49,18 +49,26 @@ pub fn strips(
     let mut strip = Strip::new(gpu, model, motion);
     let [replayed, driven] =
         ["replayed", "driven"].map(|what| folder.join(format!("{}-{what}.png", motion.name)));
-    strip.write(&replayed, strip.replayed())?;
+    strip.write(&replayed, strip.replayed([0.0, motion.seconds()]))?;
     strip.write(&driven, strip.driven())?;
     Ok([replayed, driven])
 }
 
-/// Writes a film strip of the motion, replayed for its whole length.
+/// Writes a film strip of the motion, replayed from a time on for so many seconds, or to its end.
 ///
 /// # Errors
 /// The file cannot be written, or the GPU was lost.
-pub fn film_strip(gpu: &Gpu, model: &Arc<Model>, motion: &MotionClip, path: &Path) -> Result<()> {
+pub fn film_strip(
+    gpu: &Gpu,
+    model: &Arc<Model>,
+    motion: &MotionClip,
+    [start, seconds]: [f32; 2],
+    path: &Path,
+) -> Result<()> {
     let mut strip = Strip::new(gpu, model, motion);
-    strip.write(path, strip.replayed())
+    let end = motion.seconds();
+    let start = start.min(end);
+    strip.write(path, strip.replayed([start, (start + seconds).min(end)]))
 }
 
 /// What one picture shows: a scene about a point, and how much there is to either side, m.
@@ -94,8 +102,9 @@ impl<'a> Strip<'a> {
         }
     }
 
-    fn replayed(&self) -> Vec<Shot> {
-        let shots = times(self.motion.seconds()).map(|time| {
+    fn replayed(&self, [start, end]: [f32; 2]) -> Vec<Shot> {
+        let shots = times(end - start).map(|time| {
+            let time = start + time;
             let recorded = self.recorded(time);
             let mut scene = Scene::default();
             shapes::draw(&mut scene, self.model, &recorded, Vec3::ZERO, Look::Solid);

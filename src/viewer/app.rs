@@ -12,6 +12,7 @@ use crate::kernels::locomotion::locomotion_layout::CELL;
 use crate::motion::features::{FRAMES_PER_STEP, ROW_STRIDE};
 use crate::playback::PlacedFrame;
 use crate::train::controller::Controller;
+use crate::view::camera::FOLLOW;
 use crate::view::debug_draw::{self, MATCHED, trajectory};
 use crate::view::playthrough::{Playthrough, PlaythroughContext};
 use crate::view::{Camera, Scene};
@@ -23,8 +24,7 @@ use eframe::egui_wgpu::RenderState;
 const RATE: f32 = 30.0;
 /// Frames played at once, at most, when drawing is slower than the motion.
 const CATCH_UP: f32 = 6.0;
-/// Fraction of the way to the character that the camera covers in a frame.
-const FOLLOW: f32 = 0.2;
+
 /// Width of a frame's name in the search's table, points.
 const NAME: f32 = 150.0;
 /// Search results listed.

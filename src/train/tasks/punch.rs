@@ -19,7 +19,7 @@ use crate::rl::amp::Amp;
 use crate::rl::ppo::Ppo;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
-use crate::train::task::{Loaded, Task, TaskEntry};
+use crate::train::task::{Ablation, Loaded, Measure, Task, TaskEntry, Variant};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
@@ -32,13 +32,51 @@ pub const PUNCH: TaskEntry = TaskEntry {
     preset,
     spec: check,
     load,
-    ablations: &[],
+    ablations: &[ABLATION],
+};
+
+/// The paper's figure 3, and the forms of the reward for a far target.
+const ABLATION: Ablation = Ablation {
+    name: "punch",
+    about: "The punching task: with and without its facing reward, and other rewards for a far target",
+    folder: "runs/punch-ablation",
+    measures: &[
+        Measure::percent("by a fist %", "fist_rate"),
+        Measure::percent("survival %", "survival"),
+        Measure::seconds("time s", "time_to_hit_mean_s"),
+        Measure {
+            title: "facing error deg",
+            name: "facing_error_deg",
+            unit: 1.0,
+            digits: 1,
+        },
+    ],
+    rates: &["hit", "fall"],
+    variants: &[
+        Variant {
+            name: "full",
+            changes: toml::Table::new,
+        },
+        Variant {
+            name: "no-facing",
+            changes: || toml::toml! { facing = false },
+        },
+        Variant {
+            name: "slow-product",
+            changes: || toml::toml! { far = "slow" },
+        },
+        Variant {
+            name: "printed-product",
+            changes: || toml::toml! { far = "printed" },
+        },
+    ],
 };
 
 /// The task `joystick` in the registry.
 pub const JOYSTICK: TaskEntry = TaskEntry {
     name: "joystick",
     about: "The same, while it faces any way that is wanted",
+    ablations: &[],
     ..PUNCH
 };
 
@@ -85,6 +123,22 @@ fn load(config: &Config) -> Result<Loaded> {
         task: Box::new(task),
         notes,
     })
+}
+
+/// A report as the trainer knows it.
+fn evaluation(found: &PunchReport) -> Evaluation {
+    let measures = [
+        ("episode_length_mean_s", found.mean_episode_s),
+        ("survival", found.survival),
+        ("fist_rate", found.fist_rate),
+        ("time_to_hit_mean_s", found.time_to_hit_mean_s),
+        ("facing_error_deg", found.facing_error_deg),
+    ];
+    Evaluation {
+        episodes: found.episodes,
+        success: found.hit_rate,
+        measures: measures.into_iter().collect(),
+    }
 }
 
 struct PunchTraining {
@@ -143,19 +197,7 @@ impl Task for PunchTraining {
     }
 
     fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {
-        let found = self.rate(policy, episodes);
-        let measures = [
-            ("episode_length_mean_s", found.mean_episode_s),
-            ("survival", found.survival),
-            ("fist_rate", found.fist_rate),
-            ("time_to_hit_mean_s", found.time_to_hit_mean_s),
-            ("facing_error_deg", found.facing_error_deg),
-        ];
-        Ok(Evaluation {
-            episodes: found.episodes,
-            success: found.hit_rate,
-            measures: measures.into_iter().collect(),
-        })
+        Ok(evaluation(&self.rate(policy, episodes)))
     }
 
     fn sentence(&self, found: &Evaluation) -> String {
@@ -173,7 +215,7 @@ impl Task for PunchTraining {
     fn report(&self, policy: &Policy, wanted: &EvalOptions) -> Result<EvalReport> {
         motions::refuse_matching(wanted)?;
         let found = self.rate(policy, wanted.episodes);
-        let evaluation = self.evaluate(policy, wanted.episodes)?;
+        let evaluation = evaluation(&found);
         Ok(EvalReport {
             text: format!(
                 "{}\nfacing error {:.0} degrees while the target is far\n",
