@@ -23,7 +23,7 @@ pub struct ClipReport {
     pub seconds: f32,
     /// How likely it is to be drawn, against the others.
     pub weight: f32,
-    /// The same as a fraction: of all draws those of it and of its mirrored copy.
+    /// Fraction of all draws that are of it or of its mirrored copy.
     pub share: f32,
     /// Its fraction of the seconds of all recordings, mirrored copies left out.
     pub share_of_seconds: f32,

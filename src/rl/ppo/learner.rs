@@ -27,7 +27,7 @@ const LR_FACTOR: f64 = 1.5;
 /// Range of an adapted learning rate.
 const LR_RANGE: [f64; 2] = [1e-5, 1e-2];
 
-/// The same, where it is adapted before each minibatch.
+/// Range of a learning rate that is adapted before each minibatch.
 const MINIBATCH_LR_RANGE: [f64; 2] = [2e-5, 3e-3];
 /// Index of the KL divergence in the objective's sums.
 const KL: usize = 3;
@@ -47,7 +47,7 @@ pub struct PpoLearner {
     observation_normalizer: Option<RunningMeanStd>,
     /// Where the streams of rewards come from.
     sources: Vec<RewardSource>,
-    /// Of the present iteration, one for each part of the environments.
+    /// Rollouts of the present iteration, one for each part of the environments.
     pub(in crate::rl) rollouts: Vec<Rollout>,
     gradient: Array,
     sums: Array,

@@ -79,7 +79,7 @@ impl Default for Punch {
 }
 
 impl Punch {
-    /// The same with the targets of an evaluation: all between 5 and 10 m away, at any bearing.
+    /// Choices with the targets of an evaluation: all between 5 and 10 m away, at any bearing.
     pub fn evaluated(self) -> Self {
         Punch {
             near_share: 0.0,

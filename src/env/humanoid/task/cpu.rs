@@ -27,7 +27,7 @@ pub struct CpuHumanoidEnv {
     common: Common,
     /// The physics.
     pub batch: CpuSimulatorBatch,
-    /// Of each environment, see [`end_episode`].
+    /// Steps, return, measures and sums of each environment, see [`end_episode`].
     pub episodes: Vec<Vec<f32>>,
     /// What each environment carries for the task, `[envs][state_dim]`.
     pub task_states: Vec<Vec<f32>>,

@@ -89,7 +89,7 @@ pub trait HumanoidTask: Send + Sync {
     ) {
     }
 
-    /// The same on a GPU.
+    /// What the task adds to a step on a GPU.
     fn on_gpu(&self, gpu: &Gpu) -> Box<dyn GpuHumanoidTask>;
 }
 
