@@ -2,7 +2,7 @@
 
 use footwork::motion::RATE;
 use footwork::motion::synthetic::boxing::{
-    BoxingStep, BoxingTake, Punch, PunchKind, PunchTarget, boxing_takes,
+    BoxingStep, BoxingTake, PunchKind, PunchTarget, ThrownPunch, boxing_takes,
 };
 use footwork::motion::synthetic::{perform, perform_boxing};
 use footwork::physics::humanoid::humanoid;
@@ -220,7 +220,7 @@ fn hands_are_up_at_all_times_and_in_guard_at_the_chin() {
 }
 
 /// The greatest speed of the fist on its way out (m/s).
-fn peak(take: &BoxingTake, at: &[(Vec<Vec3>, Vec<Quat>)], punch: &Punch) -> Option<f32> {
+fn peak(take: &BoxingTake, at: &[(Vec<Vec3>, Vec<Quat>)], punch: &ThrownPunch) -> Option<f32> {
     let hand = sided("Hand")[punch.kind.side()];
     let [from, to] = [punch.start, punch.turn()].map(|time| (time * RATE) as usize);
     (to + 1 < take.clip.frames()).then(|| {

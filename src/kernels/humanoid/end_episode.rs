@@ -121,7 +121,7 @@ pub fn twin(
         gather(measures, envs, env, 0, &mut measured);
         gather(episode, envs, env, 0, &mut own);
         let at = params.at as usize + env;
-        let step = Step {
+        let step = EpisodeStep {
             q: &q,
             v: &v,
             poses: &poses_of(poses, envs, env),
@@ -135,7 +135,7 @@ pub fn twin(
 }
 
 /// A step of one environment.
-pub struct Step<'a> {
+pub struct EpisodeStep<'a> {
     /// Positions after it.
     pub q: &'a [f32],
     /// Velocities after it.
@@ -149,7 +149,7 @@ pub struct Step<'a> {
 }
 
 /// How a step ends; `episode`, `[fields]`, takes it in.
-pub fn end(step: &Step, reward: &mut f32, episode: &mut [f32], params: &Params) -> u32 {
+pub fn end(step: &EpisodeStep, reward: &mut f32, episode: &mut [f32], params: &Params) -> u32 {
     let diverged = has_diverged(step.q, step.v, params.max_speed);
     episode[STEP] += 1.0;
     if diverged {

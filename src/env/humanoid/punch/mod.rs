@@ -8,7 +8,9 @@ pub mod evaluate;
 
 use super::batch::SimulatedWorld;
 use super::recorded::{mean_action, start_states};
-use super::task::{EpisodeRules, GpuHumanoidTask, HumanoidTask, Moment, StepOutcome, TaskBuffers};
+use super::task::{
+    EpisodeRules, GpuHumanoidTask, HumanoidTask, StepContext, StepOutcome, TaskBuffers,
+};
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::humanoid::punch_state::PUNCH_STATE;
 use crate::kernels::humanoid::{place_target, punch_observe, punch_reward};
@@ -122,7 +124,7 @@ fn params(punch: &Punch, joystick: bool, model: &Model) -> Params {
 }
 
 impl Params {
-    fn place(&self, moment: &Moment) -> place_target::Params {
+    fn place(&self, moment: &StepContext) -> place_target::Params {
         place_target::Params {
             envs: moment.envs,
             first: moment.first,
@@ -199,7 +201,7 @@ impl HumanoidTask for PunchTask {
         StepOutcome { reward, end, group }
     }
 
-    fn begin(&self, env: usize, moment: &Moment, start: &mut [f32], state: &mut [f32]) {
+    fn begin(&self, env: usize, moment: &StepContext, start: &mut [f32], state: &mut [f32]) {
         place_target::place(env, start, state, &self.params.place(moment));
     }
 
@@ -232,7 +234,7 @@ impl GpuHumanoidTask for GpuPunch {
         reward: &Buffer<f32>,
         group: &Buffer<u32>,
         at: usize,
-        moment: &Moment,
+        moment: &StepContext,
     ) {
         let params = punch_reward::Params {
             envs: moment.envs,
@@ -253,7 +255,7 @@ impl GpuHumanoidTask for GpuPunch {
         );
     }
 
-    fn begin(&self, worlds: &TaskBuffers, moment: &Moment) {
+    fn begin(&self, worlds: &TaskBuffers, moment: &StepContext) {
         place_target::launch(
             &worlds.gpu,
             &worlds.ended,

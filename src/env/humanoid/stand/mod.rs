@@ -10,7 +10,7 @@ use super::action::rest_action;
 use super::batch::SimulatedWorld;
 use super::starts::{START_STATES, start_states};
 use super::task::{
-    DT, EpisodeRules, GpuHumanoidTask, HumanoidTask, Moment, StepOutcome, TaskBuffers,
+    DT, EpisodeRules, GpuHumanoidTask, HumanoidTask, StepContext, StepOutcome, TaskBuffers,
 };
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::humanoid::{random_pushes, stand_reward};
@@ -111,7 +111,7 @@ impl StandTask {
 }
 
 impl Params {
-    fn pushes(&self, moment: &Moment) -> random_pushes::Params {
+    fn pushes(&self, moment: &StepContext) -> random_pushes::Params {
         random_pushes::Params {
             envs: moment.envs,
             first: moment.first,
@@ -150,7 +150,7 @@ impl HumanoidTask for StandTask {
         ]
     }
 
-    fn act(&self, env: usize, moment: &Moment, world: &mut SimulatedWorld) {
+    fn act(&self, env: usize, moment: &StepContext, world: &mut SimulatedWorld) {
         let pushes = self.params.pushes(moment);
         let force = &mut world.external_forces[pushes.body as usize].linear;
         [force.x, force.y] = random_pushes::push(env, &pushes);
@@ -184,7 +184,7 @@ struct GpuStand {
 }
 
 impl GpuHumanoidTask for GpuStand {
-    fn act(&self, worlds: &TaskBuffers, moment: &Moment) {
+    fn act(&self, worlds: &TaskBuffers, moment: &StepContext) {
         let pushes = self.params.pushes(moment);
         random_pushes::launch(&worlds.gpu, &worlds.batch.external_forces, &pushes);
     }
@@ -195,7 +195,7 @@ impl GpuHumanoidTask for GpuStand {
         reward: &Buffer<f32>,
         _group: &Buffer<u32>,
         at: usize,
-        moment: &Moment,
+        moment: &StepContext,
     ) {
         let params = stand_reward::Params {
             envs: moment.envs,

@@ -1,6 +1,6 @@
 //! What environments on both devices need to know: the model, the kernels' parameters.
 
-use super::humanoid_task::{COMMON_STATS, HumanoidTask, Moment};
+use super::humanoid_task::{COMMON_STATS, HumanoidTask, StepContext};
 use super::rules::DT;
 use crate::env::humanoid::action::action_scale;
 use crate::env::humanoid::batch::{MAX_SPEED, SimulatorBatchConfig};
@@ -94,8 +94,8 @@ impl Common {
     }
 
     /// Each moment has a counter of its own: zero is that of the opening.
-    pub fn moment(&self) -> Moment {
-        Moment {
+    pub fn moment(&self) -> StepContext {
+        StepContext {
             envs: self.spec.envs as u32,
             first: self.first as u32,
             seed: self.batch.seed,
@@ -139,7 +139,7 @@ impl Common {
         }
     }
 
-    pub fn draw_starts(&self, moment: &Moment) -> draw_starts::Params {
+    pub fn draw_starts(&self, moment: &StepContext) -> draw_starts::Params {
         let model = &self.batch.model;
         let width = model.nq() + model.nv();
         draw_starts::Params {

@@ -1,7 +1,7 @@
 //! A task on all cores: each world plays its step from beginning to end while it is in the cache.
 
 use super::common::Common;
-use super::humanoid_task::{HumanoidTask, Moment};
+use super::humanoid_task::{HumanoidTask, StepContext};
 use crate::container::{Section, SectionError};
 use crate::env::humanoid::batch::{CpuSimulatorBatch, SimulatedWorld, SimulatorBatch};
 use crate::env::spec::EnvSpec;
@@ -49,8 +49,8 @@ struct Row<'a> {
 
 /// Parameters of a step's kernels.
 struct StepParams<'a> {
-    now: Moment,
-    next: Moment,
+    now: StepContext,
+    next: StepContext,
     end_episode: end_episode::Params,
     /// Pairs of bodies, one behind the other.
     force_pairs: &'a [u32],
@@ -110,7 +110,13 @@ impl CpuHumanoidEnv {
 
 impl Common {
     /// Begins an episode of a world.
-    fn begin(&self, env: usize, moment: &Moment, world: &mut SimulatedWorld, state: &mut [f32]) {
+    fn begin(
+        &self,
+        env: usize,
+        moment: &StepContext,
+        world: &mut SimulatedWorld,
+        state: &mut [f32],
+    ) {
         let drawn = start(self.task.start_states(), env, &self.draw_starts(moment));
         world.start.copy_from_slice(drawn);
         state.fill(0.0);
@@ -156,7 +162,7 @@ impl Common {
         let task = &self.task;
         let outcome = task.reward(simulator, world, row.task_state, &mut measures);
         (*row.reward, *row.group) = (outcome.reward, outcome.group);
-        let step = end_episode::Step {
+        let step = end_episode::EpisodeStep {
             q: &world.state.q,
             v: &world.state.v,
             poses: &simulator.poses,
@@ -192,7 +198,7 @@ impl VecEnv for CpuHumanoidEnv {
         let now = self.common.moment();
         let force_pairs = self.common.batch.force_pairs();
         let params = StepParams {
-            next: Moment {
+            next: StepContext {
                 step_counter: now.step_counter + 1,
                 ..now
             },

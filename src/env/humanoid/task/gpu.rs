@@ -1,7 +1,7 @@
 //! A task on a GPU: launches only, nothing copied to the host.
 
 use super::common::Common;
-use super::humanoid_task::{GpuHumanoidTask, Moment, TaskBuffers};
+use super::humanoid_task::{GpuHumanoidTask, StepContext, TaskBuffers};
 use crate::container::{Section, SectionError};
 use crate::env::humanoid::batch::GpuSimulatorBatch;
 use crate::env::spec::EnvSpec;
@@ -56,7 +56,7 @@ impl GpuHumanoidEnv {
     }
 
     /// Begins new episodes where the last step ended one.
-    fn reset(&self, moment: &Moment) {
+    fn reset(&self, moment: &StepContext) {
         let worlds = &self.worlds;
         draw_starts::launch(
             &worlds.gpu,

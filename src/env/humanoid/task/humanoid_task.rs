@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// What the random numbers of a step depend on, besides the environment's number.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment {
+pub struct StepContext {
     /// Environments of the batch.
     pub envs: u32,
     /// Number of the first environment in the whole batch.
@@ -63,7 +63,7 @@ pub trait HumanoidTask: Send + Sync {
     }
 
     /// Acts on a world before its step.
-    fn act(&self, _env: usize, _moment: &Moment, _world: &mut SimulatedWorld) {}
+    fn act(&self, _env: usize, _moment: &StepContext, _world: &mut SimulatedWorld) {}
 
     /// What a step comes to. `simulator` has the kinematics after the step; `measures` are zero before.
     fn reward(
@@ -77,7 +77,7 @@ pub trait HumanoidTask: Send + Sync {
     }
 
     /// Begins an episode: changes the start state that was drawn, `[nq + nv]`, and sets the task's.
-    fn begin(&self, _env: usize, _moment: &Moment, _start: &mut [f32], _state: &mut [f32]) {}
+    fn begin(&self, _env: usize, _moment: &StepContext, _start: &mut [f32], _state: &mut [f32]) {}
 
     /// Observes what the task adds.
     fn observe(
@@ -96,7 +96,7 @@ pub trait HumanoidTask: Send + Sync {
 /// What a task adds to a step on a GPU: see [`HumanoidTask`]. Launches only.
 pub trait GpuHumanoidTask: Send {
     /// Acts on the worlds before their step.
-    fn act(&self, _worlds: &TaskBuffers, _moment: &Moment) {}
+    fn act(&self, _worlds: &TaskBuffers, _moment: &StepContext) {}
 
     /// Writes the step's rewards and groups from the index `at` on, and measures and ends.
     fn reward(
@@ -105,12 +105,12 @@ pub trait GpuHumanoidTask: Send {
         _reward: &Buffer<f32>,
         _group: &Buffer<u32>,
         _at: usize,
-        _moment: &Moment,
+        _moment: &StepContext,
     ) {
     }
 
     /// Changes the starts of the worlds whose step ended.
-    fn begin(&self, _worlds: &TaskBuffers, _moment: &Moment) {}
+    fn begin(&self, _worlds: &TaskBuffers, _moment: &StepContext) {}
 
     /// Observes what the task adds, of the worlds whose step ended as one of `only`, `1 << termination`:
     /// from the index `at` on, a row each `width` numbers.

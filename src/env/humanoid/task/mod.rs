@@ -14,7 +14,7 @@ mod rules;
 pub use common::{KEY_BODIES, characters, spec};
 pub use cpu::CpuHumanoidEnv;
 pub use humanoid_task::{
-    COMMON_STATS, GpuHumanoidTask, HumanoidTask, Moment, StepOutcome, TaskBuffers,
+    COMMON_STATS, GpuHumanoidTask, HumanoidTask, StepContext, StepOutcome, TaskBuffers,
 };
 pub use open::open;
 pub use rules::{DT, EpisodeRules, check_range};

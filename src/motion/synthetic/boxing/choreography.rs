@@ -2,7 +2,7 @@
 
 use super::curve::Curve;
 use super::footing::{Footing, Stance, nearest_foot};
-use super::punch::{Punch, PunchTarget};
+use super::punch::{PunchTarget, ThrownPunch};
 
 /// A step that is taken in a clip.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +48,7 @@ pub struct Choreography {
     /// The left foot's share of the weight.
     pub weight: Curve,
     pub feet: [Footing; 2],
-    pub punches: Vec<Punch>,
+    pub punches: Vec<ThrownPunch>,
     pub steps: Vec<BoxingStep>,
     /// Where the last step leads.
     stance: Stance,
@@ -115,7 +115,7 @@ impl Choreography {
 
     /// Throws a punch: the hips lead, the shoulders follow, and the fist comes last. The body stays
     /// as it is then until it [recovers](Self::recover) or throws another one.
-    pub fn throw(&mut self, punch: Punch) {
+    pub fn throw(&mut self, punch: ThrownPunch) {
         let effort = punch.kind.effort();
         let (start, apex) = (punch.start, punch.apex());
         let low = punch.target == PunchTarget::Body;

@@ -4,7 +4,7 @@ use super::arms::{Fist, LENGTH};
 use super::choreography::{CHEST_YAW, Choreography};
 use super::curve::minimum_jerk;
 use super::habits::Habits;
-use super::punch::{Punch, PunchTarget};
+use super::punch::{PunchTarget, ThrownPunch};
 use super::trunk::Trunk;
 use crate::motion::synthetic::figure::SIDE;
 use glam::{Quat, Vec3, vec3};
@@ -33,13 +33,13 @@ const PRONATION: (f32, f32) = (1.3, 0.5);
 
 /// A punch, and where its fist gets to, seen from the hips in the heading's frame.
 pub struct Flight {
-    pub punch: Punch,
+    pub punch: ThrownPunch,
     to: Vec3,
 }
 
 impl Flight {
     /// `trunk` is where it will be at the apex, `hips` their height then (m).
-    pub fn aimed(punch: Punch, trunk: &Trunk, hips: f32) -> Flight {
+    pub fn aimed(punch: ThrownPunch, trunk: &Trunk, hips: f32) -> Flight {
         let side = punch.kind.side();
         let up = punch.height - hips;
         let to = if punch.kind.is_hook() {

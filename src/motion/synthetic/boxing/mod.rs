@@ -19,7 +19,7 @@ mod stand;
 mod trunk;
 
 pub use choreography::BoxingStep;
-pub use punch::{Punch, PunchKind, PunchTarget};
+pub use punch::{PunchKind, PunchTarget, ThrownPunch};
 
 use super::figure::{self, HIPS, JOINTS};
 use super::lengths::lengths;
@@ -49,7 +49,7 @@ pub struct BoxingTake {
     /// For each frame, left and right: the foot stands, its toe joint fixed in the world.
     pub planted: Vec<[bool; 2]>,
     /// In order of time; the last ones may go on beyond the clip.
-    pub punches: Vec<Punch>,
+    pub punches: Vec<ThrownPunch>,
     /// In order of time; the last one may go on beyond the clip.
     pub steps: Vec<BoxingStep>,
 }

@@ -1,7 +1,7 @@
 //! What to do next: a random schedule of steps and punches.
 
 use super::choreography::Choreography;
-use super::punch::{Punch, PunchKind, PunchTarget};
+use super::punch::{PunchKind, PunchTarget, ThrownPunch};
 use crate::motion::synthetic::random::Random;
 use PunchKind::{Cross, Jab, LeftHook, RightHook};
 use std::f32::consts::PI;
@@ -165,7 +165,7 @@ impl Planner<'_> {
         }
     }
 
-    fn punch(&mut self, kind: PunchKind, target: PunchTarget, start: f32) -> Punch {
+    fn punch(&mut self, kind: PunchKind, target: PunchTarget, start: f32) -> ThrownPunch {
         let random = &mut *self.random;
         let out = match kind {
             Jab => random.range(0.17, 0.19),
@@ -183,7 +183,7 @@ impl Planner<'_> {
             Jab | Cross => random.range(0.955, 0.985),
             LeftHook | RightHook => random.range(0.38, 0.45),
         };
-        Punch {
+        ThrownPunch {
             kind,
             target,
             start,

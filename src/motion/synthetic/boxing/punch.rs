@@ -24,7 +24,7 @@ pub enum PunchTarget {
 
 /// A punch that is thrown in a clip.
 #[derive(Clone, Copy, Debug)]
-pub struct Punch {
+pub struct ThrownPunch {
     /// Which.
     pub kind: PunchKind,
     /// At what.
@@ -127,7 +127,7 @@ pub struct Effort {
     pub heel: f32,
 }
 
-impl Punch {
+impl ThrownPunch {
     /// When the fist has got there (s).
     pub fn apex(&self) -> f32 {
         self.start + self.out
