@@ -5,7 +5,7 @@ struct Crowd {
     bones: u32,
     points: u32,
     columns: u32,
-    // Obstacles of an environment.
+    // Boxes of an environment.
     count: u32,
     // m
     spacing: f32,

@@ -1,6 +1,7 @@
-// Upright boxes, one an instance.
+// Boxes, one an instance.
 
 #import solid
+#import spatial
 
 @vertex
 fn place(
@@ -10,8 +11,10 @@ fn place(
     // m
     @location(2) centre: vec3f,
     @location(3) half: vec3f,
-    @location(4) colour: vec3f,
+    // Quaternion.
+    @location(4) rotation: vec4f,
+    @location(5) colour: vec3f,
 ) -> Corner {
-    let at = centre + corner * half;
-    return seen(at, normal, colour);
+    let at = centre + rotate(rotation, corner * half);
+    return seen(at, rotate(rotation, normal), colour);
 }

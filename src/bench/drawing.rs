@@ -4,6 +4,7 @@ use super::clock::seconds;
 use super::recorder::{Recorder, Workload};
 use super::roofline::ItemCost;
 use super::stage::BenchContext;
+use crate::env::live_view::LiveView;
 use crate::env::locomotion::{EnvConfig, LEVELS, LocomotionTask, Obstacles, Plane};
 use crate::gpu::{Device, Gpu};
 use crate::playback::player::Style;
@@ -46,8 +47,9 @@ pub fn measure(bench: &BenchContext, record: &mut Recorder) -> Result<()> {
             level: LEVELS - 1,
         };
         let mut batch = config.open(&bench.on.device, bench.matcher)?;
-        let live_view = batch
-            .live_view()?
+        let live_view = batch.live_view()?;
+        let live_view = live_view
+            .and_then(LiveView::locomotion)
             .context("a batch of this task can be watched")?;
         let database = &bench.matcher.database;
         let crowd = Crowd::new(&studio.renderer, database, live_view, &plane, envs);

@@ -7,10 +7,13 @@ use footwork::env::locomotion::{LocomotionTask, Plane};
 use footwork::gpu::Gpu;
 use footwork::motion::normalise::Weights;
 use footwork::playback::player::Style;
+use footwork::train::body_policy::BodyPolicy;
+use footwork::train::checkpoint::Checkpoint;
 use footwork::train::controller::Controller;
 use footwork::train::data;
+use footwork::view::body_playthrough::BodyContext;
 use footwork::view::playthrough::PlaythroughContext;
-use footwork::viewer::app::PolicyEntry;
+use footwork::viewer::policies::PolicyEntry;
 use footwork::viewer::window;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -34,27 +37,19 @@ impl Play {
     }
 
     fn policy(&self, run: &std::path::Path) -> Result<()> {
-        let run = Run::open(run, self.data.as_deref())?;
+        let run = Arc::new(Run::open(run, self.data.as_deref())?);
+        run.checkpoint(&run.path)?;
+        let title = format!("footwork: {}", run.folder.path().display());
+        if let Some(body) = run.task.body() {
+            let policies = policies(&run, |run, of| BodyPolicy::new(of, &run.config))?;
+            let context = BodyContext::new(body);
+            return window::play_body(&Gpu::drawing()?, &title, context, policies);
+        }
         let locomotion = run.locomotion("play")?;
         let (matcher, task) = (locomotion.matcher.clone(), locomotion.task);
-        run.checkpoint(&run.path)?;
-        let mut paths = run.folder.checkpoint_files()?;
-        // The requested one is shown first: it comes last.
-        paths.retain(|other| other.file_name() != run.path.file_name());
-        paths.push(run.path.clone());
-        let run = Arc::new(run);
-        let policies = paths.into_iter().map(|path| {
-            let name = path.file_stem().unwrap_or_default();
-            let (name, run) = (name.to_string_lossy().into(), run.clone());
-            let load = move || Ok(Box::new(run.checkpoint(&path)?.policy) as Box<dyn Controller>);
-            PolicyEntry {
-                name,
-                load: Box::new(load),
-            }
-        });
-        let title = format!("footwork: {}", run.folder.path().display());
+        let policies = policies(&run, |_, of| Ok(Box::new(of.policy) as Box<dyn Controller>))?;
         let context = PlaythroughContext::new(matcher, task, Style::BEST);
-        window::play(&Gpu::drawing()?, &title, context, policies.collect())
+        window::play(&Gpu::drawing()?, &title, context, policies)
     }
 
     fn motion(&self) -> Result<()> {
@@ -70,4 +65,25 @@ impl Play {
         let context = PlaythroughContext::new(Arc::new(matcher), task, Style::BEST);
         window::play(&Gpu::drawing()?, "footwork", context, Vec::new())
     }
+}
+
+/// A run's checkpoints, of each of which `load` makes a policy. The requested one is the last: it is shown
+/// first.
+fn policies<P: 'static>(
+    run: &Arc<Run>,
+    load: fn(&Run, Checkpoint) -> Result<P>,
+) -> Result<Vec<PolicyEntry<P>>> {
+    let mut paths = run.folder.checkpoint_files()?;
+    paths.retain(|other| other.file_name() != run.path.file_name());
+    paths.push(run.path.clone());
+    let entry = |path: PathBuf| {
+        let name = path.file_stem().unwrap_or_default();
+        let (name, run) = (name.to_string_lossy().into(), run.clone());
+        let load = move || load(&run, run.checkpoint(&path)?);
+        PolicyEntry {
+            name,
+            load: Box::new(load) as Box<dyn Fn() -> Result<P>>,
+        }
+    };
+    Ok(paths.into_iter().map(entry).collect())
 }

@@ -4,6 +4,7 @@ use super::Usage;
 use super::run::Run;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
+use footwork::env::humanoid::task::play;
 use footwork::gpu::Gpu;
 use footwork::nn::Policy;
 use footwork::playback::player::Style;
@@ -132,7 +133,11 @@ impl Render {
         let run = Run::open(&self.run, self.data.as_deref())?;
         let policy = run.checkpoint(&run.path)?.policy;
         let gpu = Gpu::drawing()?;
-        if let Some((model, motion)) = run.task.motion(&policy, self.episode as u32) {
+        if let Some(body) = run.task.body() {
+            let mut envs = body.open(self.episode as u32);
+            let model = envs.task().model().clone();
+            let mean = |observation: &[f32]| policy.mean(observation);
+            let motion = play::record(&mut envs, &mean, &run.config.task.name);
             if let Output::Png(path) = &output {
                 film_strip(&gpu, &model, &motion, [self.start, self.seconds], path)?;
                 println!("{}", path.display());

@@ -13,8 +13,6 @@ use footwork::rl::rollout::check_fits;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Preset};
 use footwork::train::run_dir::{RunDir, Summary};
-#[cfg(feature = "viewer")]
-use footwork::train::task::Unsupported;
 use footwork::train::task::{Task, TaskEntry};
 use footwork::train::tasks::{REGISTRY, config_of, find};
 use footwork::train::trainer::{Training, train};
@@ -136,14 +134,6 @@ impl Train {
         };
         self.limit(&mut config);
         let opened = Opened::new(entry, &mut config)?;
-        #[cfg(feature = "viewer")]
-        if self.watch && opened.task.locomotion().is_none() {
-            let why = format!(
-                "--watch shows motion matching, which `{}` is not of",
-                entry.name
-            );
-            return Err(Unsupported(why).into());
-        }
         let start = self.choices.start()?;
         let from = match &resumed {
             Some(run) => Some(go_on(run, &config, &opened)?),

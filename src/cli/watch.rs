@@ -10,7 +10,7 @@ use footwork::train::observer::Observer;
 use footwork::train::run_dir::Summary;
 use footwork::train::state::RecentMeans;
 use footwork::train::trainer::{Training, train};
-use footwork::viewer::watch::Watch;
+use footwork::viewer::watch::{Watch, WatchedMotion};
 use footwork::viewer::window;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -55,13 +55,13 @@ pub fn watched(
             over.store(true, Ordering::Relaxed);
             summary
         });
-        if let Some(locomotion) = training.task.locomotion() {
-            let (database, task) = (locomotion.matcher.database.clone(), locomotion.task);
-            let envs = training.config.ppo.envs;
-            let shown = window::watch(&gpu, database, task, envs, watch, over.clone());
-            if let Err(error) = shown {
-                eprintln!("note: the training goes on unwatched: {error:#}");
-            }
+        let motion = training.task.locomotion().map(|of| WatchedMotion {
+            database: of.matcher.database.clone(),
+            task: of.task,
+            envs: training.config.ppo.envs,
+        });
+        if let Err(error) = window::watch(&gpu, motion, watch, over.clone()) {
+            eprintln!("note: the training goes on unwatched: {error:#}");
         }
         running
             .join()

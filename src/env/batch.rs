@@ -4,7 +4,7 @@
 //! every step cores would wait for the slowest. On a GPU all environments are one part.
 
 use super::curriculum::Curriculum;
-use super::live_view::{LiveView, States};
+use super::live_view::LiveView;
 use super::spec::EnvSpec;
 use super::stats::Stats;
 use super::vec_env::VecEnv;
@@ -100,15 +100,14 @@ impl EnvBatch {
     /// # Errors
     /// The device was lost.
     pub fn live_view(&mut self) -> Result<Option<LiveView>> {
-        let mut states = Vec::new();
+        let mut all: Option<LiveView> = None;
         for part in &mut self.parts {
-            match part.live_view()? {
-                Some(LiveView::Cpu(part)) => states.extend(part.0),
-                // A GPU has one part.
-                other => return Ok(other),
+            match (&mut all, part.live_view()?) {
+                (Some(all), Some(part)) => all.join(part),
+                (_, first) => all = first,
             }
         }
-        Ok(Some(LiveView::Cpu(States(states))))
+        Ok(all)
     }
 
     /// Saves every part into a section of its own, and the curriculum.

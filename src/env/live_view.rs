@@ -1,11 +1,20 @@
 //! Environments, seen from outside while they run.
 
+use super::body_view::{BodyView, BodyWorlds};
 use crate::gpu::Shared;
 use crate::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Where environments keep what there is to see.
+/// What there is to see of environments.
 pub enum LiveView {
+    /// Characters that recorded frames are played of.
+    Locomotion(LocomotionView),
+    /// Simulated bodies.
+    Bodies(BodyView),
+}
+
+/// Where environments keep what there is to see of motion matching.
+pub enum LocomotionView {
     /// The GPU's own buffers: whoever draws on that device reads them in place.
     Gpu(Box<Buffers>),
     /// The latest step's state of environments on the CPU.
@@ -74,6 +83,34 @@ impl States {
             state_f32: fields(state_f32::FIELDS, &parts, |part| &part.state_f32),
             state_u32: fields(state_u32::FIELDS, &parts, |part| &part.state_u32),
             boxes: fields(1, &parts, |part| &part.boxes),
+        }
+    }
+}
+
+impl LiveView {
+    /// That of motion matching.
+    pub fn locomotion(self) -> Option<LocomotionView> {
+        match self {
+            LiveView::Locomotion(view) => Some(view),
+            LiveView::Bodies(_) => None,
+        }
+    }
+
+    /// Adds the view of another part of the same batch. Parts on a GPU are alone.
+    pub fn join(&mut self, other: LiveView) {
+        match (self, other) {
+            (
+                LiveView::Locomotion(LocomotionView::Cpu(States(all))),
+                LiveView::Locomotion(LocomotionView::Cpu(States(more))),
+            ) => all.extend(more),
+            (LiveView::Bodies(all), LiveView::Bodies(more)) => {
+                if let (BodyWorlds::Cpu(all), BodyWorlds::Cpu(more)) =
+                    (&mut all.worlds, more.worlds)
+                {
+                    all.extend(more);
+                }
+            }
+            _ => {}
         }
     }
 }

@@ -4,6 +4,7 @@
 //! of a training. [`locomotion`] are the motion-matching tasks, [`humanoid`] the simulated bodies.
 
 pub mod batch;
+pub mod body_view;
 pub mod curriculum;
 pub mod demonstrations;
 pub mod humanoid;

@@ -4,6 +4,8 @@
 //! evaluates policies and draws figures; [`tasks`] is the list of them.
 
 pub mod ablation;
+pub mod body_episodes;
+pub mod body_policy;
 pub mod checkpoint;
 pub mod config;
 pub mod controller;

@@ -4,6 +4,7 @@
 //! all of them are in [`super::tasks::REGISTRY`]. A [`Task`] is one with its choices made and its data
 //! loaded.
 
+use super::body_episodes::BodyEpisodes;
 use super::config::{Config, ConfigError, Preset, TaskPreset};
 use super::evaluation::{EvalOptions, EvalReport, Evaluation};
 use super::locomotion::Locomotion;
@@ -14,14 +15,11 @@ use super::run_dir::RunDir;
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::nn::{ActorCritic, Policy};
-use crate::physics::model::Model;
-use crate::physics::motion_clip::MotionClip;
 use crate::rl::Algorithm;
 use crate::rl::amp::discriminator::network;
 use crate::rl::ppo::PpoLearner;
 use anyhow::Result;
 use std::path::Path;
-use std::sync::Arc;
 
 /// A task by name, before its choices are made.
 pub struct TaskEntry {
@@ -150,13 +148,13 @@ pub trait Task: Send + Sync {
     #[cfg(feature = "report")]
     fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()>;
 
-    /// What `play`, `--watch` and `render` show of motion matching.
+    /// What `play`, `train --watch` and `render` show of motion matching.
     fn locomotion(&self) -> Option<&Locomotion> {
         None
     }
 
-    /// What `render` shows of a simulated body: the motion of an episode under a policy.
-    fn motion(&self, _policy: &Policy, _episode: u32) -> Option<(Arc<Model>, MotionClip)> {
+    /// What `play` and `render` show of a simulated body.
+    fn body(&self) -> Option<BodyEpisodes> {
         None
     }
 }

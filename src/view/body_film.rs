@@ -6,11 +6,8 @@ use super::renderer::Renderer;
 use super::scene::Scene;
 use super::shapes::{self, Look};
 use crate::gpu::Gpu;
-use crate::physics::kinematics::kinematics;
 use crate::physics::model::Model;
 use crate::physics::motion_clip::MotionClip;
-use crate::physics::pose::Pose;
-use crate::physics::spatial::Spatial;
 use anyhow::Result;
 use glam::Vec3;
 use std::sync::Arc;
@@ -64,9 +61,7 @@ impl<'a> BodyFilm<'a> {
     /// # Errors
     /// The GPU was lost.
     pub fn picture(&mut self) -> Result<Vec<u8>> {
-        let mut poses = vec![Pose::default(); self.model.bodies.len()];
-        let mut axes = vec![Spatial::ZERO; self.model.nv()];
-        kinematics(self.model, self.motion.q(self.frame), &mut poses, &mut axes);
+        let poses = shapes::poses(self.model, self.motion.q(self.frame));
         let mut scene = Scene::default();
         shapes::draw(&mut scene, self.model, &poses, Vec3::ZERO, Look::Solid);
         self.renderer.draw(&scene, None, &self.camera, &self.target);

@@ -74,20 +74,52 @@ impl Camera {
 
     /// Moves the focus over the ground: to the right of the picture and away from the eye, m.
     pub fn pan(&mut self, right: f32, away: f32) {
-        let (sin, cos) = self.yaw.sin_cos();
-        self.focus += Vec3::new(cos * right - sin * away, 0.0, -sin * right - cos * away);
+        self.focus += self.over_ground([right, away]);
     }
 
-    /// The ground point under a point of the picture, from (-1, -1) at the lower left to (1, 1).
-    /// `None` above the horizon.
-    pub fn ground(&self, place: Vec2, aspect: f32) -> Option<[f32; 2]> {
+    /// A way over the ground in the scene: to the right of the picture and away from the eye, m.
+    pub fn over_ground(&self, [right, away]: [f32; 2]) -> Vec3 {
+        let (sin, cos) = self.yaw.sin_cos();
+        Vec3::new(cos * right - sin * away, 0.0, -sin * right - cos * away)
+    }
+
+    /// What is seen at a point of the picture, from (-1, -1) at the lower left to (1, 1).
+    pub fn ray(&self, place: Vec2, aspect: f32) -> Ray {
         let back = self.clip(aspect).inverse();
         let [near, far] = [0.0, 1.0].map(|depth| back.project_point3(place.extend(depth)));
-        let ray = far - near;
-        (ray.y < 0.0).then(|| {
-            let hit = near - ray * (near.y / ray.y);
-            [hit.x, hit.z]
-        })
+        Ray {
+            from: near,
+            along: (far - near).normalize_or(Vec3::NEG_Y),
+        }
+    }
+}
+
+/// A half line through a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// m
+    pub from: Vec3,
+    /// A unit vector.
+    pub along: Vec3,
+}
+
+impl Ray {
+    /// Where it meets the ground; `None` above the horizon.
+    pub fn ground(&self) -> Option<[f32; 2]> {
+        let hit = self.plane(Vec3::ZERO, Vec3::Y)?;
+        Some([hit.x, hit.z])
+    }
+
+    /// Where it meets a plane through a point.
+    pub fn plane(&self, point: Vec3, normal: Vec3) -> Option<Vec3> {
+        let far = normal.dot(point - self.from) / normal.dot(self.along);
+        (far.is_finite() && far > 0.0).then(|| self.from + far * self.along)
+    }
+
+    /// Its distance from a point, m.
+    pub fn distance(&self, point: Vec3) -> f32 {
+        let far = self.along.dot(point - self.from).max(0.0);
+        (self.from + far * self.along).distance(point)
     }
 }
 
@@ -105,12 +137,12 @@ mod tests {
             Vec2::new(-0.7, -0.9),
             Vec2::new(0.4, 0.1),
         ] {
-            let [x, z] = camera.ground(place, 1.6).expect("below the horizon");
+            let [x, z] = camera.ray(place, 1.6).ground().expect("below the horizon");
             let back = camera.clip(1.6).project_point3(Vec3::new(x, 0.0, z));
             assert!((back.truncate() - place).length() < 1e-3, "{place} {back}");
         }
         camera.pitch = 0.0;
-        assert_eq!(camera.ground(Vec2::new(0.0, 0.9), 1.6), None);
+        assert_eq!(camera.ray(Vec2::new(0.0, 0.9), 1.6).ground(), None);
     }
 
     #[test]

@@ -1,16 +1,15 @@
-//! All environments of a training at once, drawn from where the training keeps them.
+//! All environments of a training by motion matching at once, drawn from where the training keeps them.
 
 use super::capsule_rig::CapsuleRig;
-use super::meshes::{cube, sphere};
-use super::painter::{Drawable, Mesh, Pass, Pipelines, vertex_buffer};
+use super::crowd_shape::{CrowdParams, CrowdShape};
+use super::painter::{Drawable, Pass};
 use super::renderer::Renderer;
-use crate::env::live_view::{LiveView, States};
+use crate::env::live_view::{LocomotionView, States};
 use crate::env::locomotion::LocomotionTask;
 use crate::gpu::Shared;
 use crate::gpu::shader::{DRAW_CROWD, DRAW_CROWD_CUBOIDS};
 use crate::motion::database::Database;
 use crate::playback::PlacedFrame;
-use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use rayon::prelude::*;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -20,19 +19,6 @@ const SPACING: f32 = 4.0;
 /// Farthest of a body's points from its origin, m; as in the shader.
 const REACH: f32 = 4.0;
 
-/// `Crowd` of `shaders/shared/crowd.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct Params {
-    envs: u32,
-    bones: u32,
-    points: u32,
-    columns: u32,
-    count: u32,
-    spacing: f32,
-    unused: [u32; 2],
-}
-
 /// A state on the host and its copies on the device.
 struct Copied {
     states: States,
@@ -41,15 +27,7 @@ struct Copied {
     boxes: Option<wgpu::Buffer>,
 }
 
-/// One mesh, drawn many times at positions that a shader computes.
-struct CrowdShape {
-    pipelines: Pipelines,
-    mesh: Mesh,
-    group: wgpu::BindGroup,
-    instances: u32,
-}
-
-/// The environments of a training, ready to be drawn.
+/// The characters of a training by motion matching, ready to be drawn.
 pub struct Crowd {
     /// The characters with their targets; then the obstacles, if there are any.
     shapes: Vec<CrowdShape>,
@@ -57,7 +35,7 @@ pub struct Crowd {
     pub side: f32,
     copied: Option<Copied>,
     /// Keeps the buffers that are drawn from.
-    _live_view: LiveView,
+    _live_view: LocomotionView,
 }
 
 impl Crowd {
@@ -65,14 +43,14 @@ impl Crowd {
     pub fn new(
         renderer: &Renderer,
         database: &Database,
-        live_view: LiveView,
+        live_view: LocomotionView,
         task: &LocomotionTask,
         envs: usize,
     ) -> Crowd {
         let device = &renderer.device;
         let rig = CapsuleRig::of(&database.skeleton, &database.roles);
         let columns = (envs as f32).sqrt().ceil() as u32;
-        let params = Params {
+        let params = CrowdParams {
             envs: envs as u32,
             bones: rig.bones.len() as u32,
             points: rig.points().len() as u32,
@@ -100,7 +78,7 @@ impl Crowd {
             storage(bytes, read | wgpu::BufferUsages::COPY_DST)
         });
         let (state_f32, state_u32, boxes) = match (&live_view, &copied) {
-            (LiveView::Gpu(buffers), _) => (
+            (LocomotionView::Gpu(buffers), _) => (
                 buffers.state_f32.binding(),
                 buffers.state_u32.binding(),
                 buffers.boxes.as_ref().map(Shared::binding),
@@ -110,25 +88,19 @@ impl Crowd {
                 copied.state_u32.as_entire_binding(),
                 copied.boxes.as_ref().map(wgpu::Buffer::as_entire_binding),
             ),
-            (LiveView::Cpu(_), None) => unreachable!("a state on the host is always copied"),
+            (LocomotionView::Cpu(_), None) => unreachable!("a state on the host is always copied"),
         };
         let (points, bones) = (points.as_entire_binding(), bones.as_entire_binding());
-        let corner = wgpu::vertex_attr_array![0 => Float32x4];
-        let mut shapes = vec![CrowdShape::new(
+        let mut shapes = vec![CrowdShape::capsules(
             renderer,
             DRAW_CROWD,
-            vertex_buffer::<[f32; 4]>(wgpu::VertexStepMode::Vertex, &corner),
-            Mesh::new(device, &sphere(8, 2)),
             vec![state_f32, state_u32, points, bones, uniform.clone()],
             params.envs * (params.bones + 1),
         )];
         if let Some(boxes) = boxes {
-            let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
-            shapes.push(CrowdShape::new(
+            shapes.push(CrowdShape::cuboids(
                 renderer,
                 DRAW_CROWD_CUBOIDS,
-                vertex_buffer::<[[f32; 3]; 2]>(wgpu::VertexStepMode::Vertex, &corner),
-                Mesh::new(device, &cube()),
                 vec![boxes, uniform],
                 params.envs * params.count,
             ));
@@ -156,46 +128,12 @@ impl Drawable for Crowd {
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass, which: Pass) {
-        for shape in &self.shapes {
-            pass.set_pipeline(shape.pipelines.of(which));
-            pass.set_bind_group(2, &shape.group, &[]);
-            shape.mesh.draw(pass, shape.instances);
-        }
+        self.shapes.iter().for_each(|shape| shape.draw(pass, which));
     }
 }
 
-impl CrowdShape {
-    /// From the text of a shader that binds storage buffers and, last, the crowd as group 2.
-    fn new(
-        renderer: &Renderer,
-        text: &str,
-        corners: Option<wgpu::VertexBufferLayout>,
-        mesh: Mesh,
-        bound: Vec<wgpu::BindingResource>,
-        instances: u32,
-    ) -> CrowdShape {
-        let device = &renderer.device;
-        let layout = layout(device, bound.len() as u32);
-        let entries: Vec<_> = (0..)
-            .zip(bound)
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("crowd"),
-            layout: &layout,
-            entries: &entries,
-        });
-        CrowdShape {
-            pipelines: renderer.pipelines(text, &[corners], Some(&layout)),
-            mesh,
-            group,
-            instances,
-        }
-    }
-}
-
-fn copied(live_view: &LiveView, buffer: impl Fn(&[u8]) -> wgpu::Buffer) -> Option<Copied> {
-    let LiveView::Cpu(states) = live_view else {
+fn copied(live_view: &LocomotionView, buffer: impl Fn(&[u8]) -> wgpu::Buffer) -> Option<Copied> {
+    let LocomotionView::Cpu(states) = live_view else {
         return None;
     };
     let now = states.now();
@@ -234,26 +172,4 @@ fn points(database: &Database, rig: &CapsuleRig) -> Vec<[u32; 2]> {
 fn quantise(metres: f32) -> u16 {
     let most = f32::from(i16::MAX);
     (metres / REACH * most).round().clamp(-most, most) as i16 as u16
-}
-
-/// Storage buffers, and last a uniform.
-fn layout(device: &wgpu::Device, count: u32) -> wgpu::BindGroupLayout {
-    let entry = |binding| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::VERTEX,
-        ty: wgpu::BindingType::Buffer {
-            ty: match binding + 1 == count {
-                true => wgpu::BufferBindingType::Uniform,
-                false => wgpu::BufferBindingType::Storage { read_only: true },
-            },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    let entries: Vec<_> = (0..count).map(entry).collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("crowd"),
-        entries: &entries,
-    })
 }

@@ -83,6 +83,7 @@ fn obstacles(scene: &mut Scene, playthrough: &Playthrough) {
         scene.cuboids.push(Cuboid {
             centre: [x, 0.5 * height, z],
             half: [half_x, 0.5 * height, half_z],
+            rotation: Cuboid::UPRIGHT,
             colour: match hit {
                 true => HIT_OBSTACLE,
                 false => OBSTACLE.map(|value| value * (0.75 + 0.5 * own)),

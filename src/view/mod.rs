@@ -1,21 +1,27 @@
 //! Pictures of what a character does: a scene in plain data, and the renderer that draws it into a
 //! texture, for a window or for a file.
 
+pub mod body_crowd;
 pub mod body_film;
+pub mod body_playthrough;
+pub mod body_scene;
 pub mod camera;
 pub mod capsule_rig;
 pub mod crowd;
+mod crowd_shape;
 pub mod debug_draw;
 pub mod image_files;
 pub mod meshes;
 pub mod painter;
 pub mod playthrough;
+pub mod reference;
 pub mod render_target;
 pub mod renderer;
 pub mod scene;
 pub mod shapes;
 pub mod strip;
 
+pub use body_crowd::BodyCrowd;
 pub use camera::Camera;
 pub use crowd::Crowd;
 pub use render_target::RenderTarget;

@@ -217,7 +217,7 @@ fn capsules(device: &wgpu::Device, layouts: &Layouts) -> Painter {
 
 fn cuboids(device: &wgpu::Device, layouts: &Layouts) -> Painter {
     let corner = attributes![0 => Float32x3, 1 => Float32x3];
-    let instance = attributes![2 => Float32x3, 3 => Float32x3, 4 => Float32x3];
+    let instance = attributes![2 => Float32x3, 3 => Float32x3, 4 => Float32x4, 5 => Float32x3];
     let buffers = [
         vertex_buffer::<[[f32; 3]; 2]>(wgpu::VertexStepMode::Vertex, &corner),
         vertex_buffer::<Cuboid>(wgpu::VertexStepMode::Instance, &instance),

@@ -22,14 +22,16 @@ pub struct Capsule {
     pub colour: Colour,
 }
 
-/// An upright box.
+/// A box.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Cuboid {
     /// Centre, m.
     pub centre: [f32; 3],
-    /// Half its sides, m.
+    /// Half its sides, along its own axes, m.
     pub half: [f32; 3],
+    /// Quaternion (x, y, z, w) from its own axes to the world's.
+    pub rotation: [f32; 4],
     /// Colour of the surface.
     pub colour: Colour,
 }
@@ -39,8 +41,13 @@ pub struct Cuboid {
 pub struct Scene {
     /// Capsules and balls.
     pub capsules: Vec<Capsule>,
-    /// Upright boxes.
+    /// Boxes.
     pub cuboids: Vec<Cuboid>,
+}
+
+impl Cuboid {
+    /// The rotation of an upright box along the world's axes.
+    pub const UPRIGHT: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 }
 
 impl Scene {
@@ -70,5 +77,14 @@ impl Scene {
     /// A cone that ends in a point.
     pub fn tip(&mut self, base: Vec3, radius: f32, tip: Vec3, colour: Colour) {
         self.capsule(base, radius, tip, 0.002, colour);
+    }
+
+    /// An arrow: a rod that ends in a cone.
+    pub fn arrow(&mut self, from: Vec3, to: Vec3, radius: f32, colour: Colour) {
+        const HEAD: f32 = 6.0;
+        let along = to - from;
+        let neck = to - along.clamp_length_max(HEAD * radius);
+        self.rod(&[from, neck], radius, colour);
+        self.tip(neck, 2.5 * radius, to, colour);
     }
 }

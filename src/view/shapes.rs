@@ -1,24 +1,36 @@
 //! A simulated model as it is: its spheres, capsules and boxes.
 
 use super::capsule_rig::{LEFT, RIGHT, TRUNK};
-use super::scene::{Colour, Scene};
+use super::scene::{Colour, Cuboid, Scene};
+use crate::physics::kinematics::kinematics;
 use crate::physics::model::{Geom, GeomShape, Model};
 use crate::physics::pose::Pose;
+use crate::physics::spatial::Spatial;
 use glam::{Quat, Vec3};
 
+const THING: Colour = [0.42, 0.34, 0.30];
 /// A ghost's colours are mixed with this one, by this fraction.
 const GHOST: (Colour, f32) = ([0.80, 0.84, 0.88], 0.75);
-/// Radius of the edges of a rotated box, m.
-const ROUNDING: f32 = 0.02;
-/// Most rods beside each other: a box that is larger has gaps.
-const RODS: f32 = 64.0;
 
 /// Turns the bodies' axes, z up, x forward, to the scene's: y up, z forward.
 const UPRIGHT: Quat = Quat::from_xyzw(-0.5, -0.5, -0.5, 0.5);
 
-/// A point of the bodies' world in the scene's.
+/// A point or a direction of the bodies' world in the scene's.
 pub fn seen(at: Vec3) -> Vec3 {
     UPRIGHT * at
+}
+
+/// A point or a direction of the scene in the bodies' world: the opposite of [`seen`].
+pub fn simulated(at: Vec3) -> Vec3 {
+    UPRIGHT.inverse() * at
+}
+
+/// Poses of the bodies at positions `q`.
+pub fn poses(model: &Model, q: &[f32]) -> Vec<Pose> {
+    let mut poses = vec![Pose::default(); model.bodies.len()];
+    let mut axes = vec![Spatial::ZERO; model.nv()];
+    kinematics(model, q, &mut poses, &mut axes);
+    poses
 }
 
 /// Whether a body is there, or shown for comparison.
@@ -42,11 +54,15 @@ pub fn draw(scene: &mut Scene, model: &Model, poses: &[Pose], aside: Vec3, look:
     }
 }
 
-fn colour(model: &Model, geom: &Geom, look: Look) -> Colour {
-    let body = geom.body.map_or("", |body| &model.bodies[body].name);
-    let own = match body {
-        _ if body.contains("left") => LEFT,
-        _ if body.contains("right") => RIGHT,
+/// The colour of a shape: left limbs are blue, right ones orange, and what has no limbs is brown.
+pub(super) fn colour(model: &Model, geom: &Geom, look: Look) -> Colour {
+    let body = geom.body.map(|body| &model.bodies[body]);
+    let name = body.map_or("", |body| &body.name);
+    let alone = body.is_some_and(|body| model.trees[body.tree].bodies.len() == 1);
+    let own = match name {
+        _ if name.contains("left") => LEFT,
+        _ if name.contains("right") => RIGHT,
+        _ if alone => THING,
         _ => TRUNK,
     };
     let (pale, fraction) = GHOST;
@@ -64,24 +80,11 @@ fn shape(scene: &mut Scene, shape: GeomShape, pose: &Pose, colour: Colour) {
             let ends = [-half, half].map(|along| pose.at(Vec3::Z * along));
             scene.rod(&ends, radius, colour);
         }
-        GeomShape::Box { half } => cuboid(scene, half, pose, colour),
+        GeomShape::Box { half } => scene.cuboids.push(Cuboid {
+            centre: pose.position.to_array(),
+            half: half.to_array(),
+            rotation: pose.rotation.to_array(),
+            colour,
+        }),
     }
-}
-
-/// Scenes have upright boxes only: rods along x, side by side, fill a rotated one.
-fn cuboid(scene: &mut Scene, half: Vec3, pose: &Pose, colour: Colour) {
-    let radius = half.min_element().min(ROUNDING);
-    let inner = half - radius;
-    for y in steps(inner.y, radius) {
-        for z in steps(inner.z, radius) {
-            let ends = [-inner.x, inner.x].map(|x| pose.at(Vec3::new(x, y, z)));
-            scene.rod(&ends, radius, colour);
-        }
-    }
-}
-
-/// From -`end` to `end`, no further apart than `most`.
-fn steps(end: f32, most: f32) -> impl Iterator<Item = f32> {
-    let count = (2.0 * end / most).ceil().clamp(1.0, RODS);
-    (0..=count as usize).map(move |step| end * (2.0 * step as f32 / count - 1.0))
 }

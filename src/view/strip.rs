@@ -8,12 +8,10 @@ use super::renderer::Renderer;
 use super::scene::Scene;
 use super::shapes::{self, Look};
 use crate::gpu::Gpu;
-use crate::physics::kinematics::kinematics;
 use crate::physics::model::Model;
 use crate::physics::motion_clip::{MotionClip, pd_targets};
 use crate::physics::pose::Pose;
 use crate::physics::simulator::{STEP_RATE, SUBSTEPS, Simulator, SimulatorState, SolverOptions};
-use crate::physics::spatial::Spatial;
 use anyhow::{Context, Result};
 use glam::Vec3;
 use std::path::{Path, PathBuf};
@@ -89,7 +87,7 @@ struct Strip<'a> {
 impl<'a> Strip<'a> {
     /// Seen from beside the front of the body at its start.
     fn new(gpu: &Gpu, model: &'a Arc<Model>, motion: &'a MotionClip) -> Strip<'a> {
-        let front = shapes::seen(poses(model, motion.q(0))[0].rotation * Vec3::X);
+        let front = shapes::seen(shapes::poses(model, motion.q(0))[0].rotation * Vec3::X);
         Strip {
             model,
             motion,
@@ -118,12 +116,14 @@ impl<'a> Strip<'a> {
     }
 
     fn driven(&self) -> Vec<Shot> {
-        let (sin, cos) = self.camera.yaw.sin_cos();
-        let aside = Vec3::new(cos, 0.0, -sin) * ASIDE[0] - Vec3::new(sin, 0.0, cos) * ASIDE[1];
+        let aside = self.camera.over_ground(ASIDE);
         let mut body = Driven::new(self.model, self.motion);
         let shots = times(FALL.min(self.motion.seconds())).map(|time| {
             body.until(time);
-            let (simulated, recorded) = (poses(self.model, &body.state.q), self.recorded(time));
+            let (simulated, recorded) = (
+                shapes::poses(self.model, &body.state.q),
+                self.recorded(time),
+            );
             let [one, other] = [&simulated, &recorded].map(|poses| shapes::seen(poses[0].position));
             let between = other + aside - one;
             let mut scene = Scene::default();
@@ -139,7 +139,7 @@ impl<'a> Strip<'a> {
     }
 
     fn recorded(&self, time: f32) -> Vec<Pose> {
-        poses(self.model, &self.motion.at(self.model, time).0)
+        shapes::poses(self.model, &self.motion.at(self.model, time).0)
     }
 
     /// One picture beside the other.
@@ -203,11 +203,4 @@ impl<'a> Driven<'a> {
 /// The times of a strip's pictures, s.
 fn times(end: f32) -> impl Iterator<Item = f32> {
     (0..PICTURES).map(move |picture| end * picture as f32 / (PICTURES - 1) as f32)
-}
-
-fn poses(model: &Model, q: &[f32]) -> Vec<Pose> {
-    let mut poses = vec![Pose::default(); model.bodies.len()];
-    let mut axes = vec![Spatial::ZERO; model.nv()];
-    kinematics(model, q, &mut poses, &mut axes);
-    poses
 }

@@ -3,12 +3,15 @@
 #[cfg(feature = "gamepad")]
 use super::gamepad::Gamepad;
 use super::maps;
+use super::policies::{Policies, PolicyEntry};
 use super::runners_up::{Found, nearest};
 use super::screen::{PointerAction, Screen};
 use super::source::{self, Source, Steered};
 use super::timeline::Timeline;
+use super::transport::{self, Seek, Transport};
 use crate::gpu::Gpu;
 use crate::kernels::locomotion::locomotion_layout::CELL;
+use crate::motion::RATE;
 use crate::motion::features::{FRAMES_PER_STEP, ROW_STRIDE};
 use crate::playback::PlacedFrame;
 use crate::train::controller::Controller;
@@ -20,40 +23,22 @@ use anyhow::Result;
 use eframe::egui::{self, Key, Ui};
 use eframe::egui_wgpu::RenderState;
 
-/// Frames of motion a second.
-const RATE: f32 = 30.0;
-/// Frames played at once, at most, when drawing is slower than the motion.
-const CATCH_UP: f32 = 6.0;
-
 /// Width of a frame's name in the search's table, points.
 const NAME: f32 = 150.0;
 /// Search results listed.
 const LISTED: usize = 8;
 
-/// A policy that can be chosen.
-pub struct PolicyEntry {
-    /// Name in the list.
-    pub name: String,
-    /// Loads it.
-    pub load: Box<dyn Fn() -> Result<Box<dyn Controller>>>,
-}
-
-/// The window of `play`.
+/// The window of `play` of motion matching.
 pub struct Viewer {
     context: PlaythroughContext,
     source: Source,
     /// A run's checkpoints; none when only motion is shown.
-    policies: Vec<PolicyEntry>,
-    chosen: usize,
-    timeline: Timeline,
+    policies: Policies<Box<dyn Controller>>,
+    timeline: Timeline<Playthrough>,
     /// Frame of a clip.
     clip_frame: usize,
-    playing: bool,
-    speed: f32,
-    /// Frames that time has passed for and that are not played yet.
-    owed: f32,
+    transport: Transport,
     camera: Camera,
-    follow: bool,
     /// The obstacle being dragged, and the pointer relative to its centre, m.
     grabbed: Option<(usize, [f32; 2])>,
     search: bool,
@@ -76,10 +61,11 @@ impl Viewer {
         gpu: &Gpu,
         window: &RenderState,
         context: PlaythroughContext,
-        policies: Vec<PolicyEntry>,
+        policies: Vec<PolicyEntry<Box<dyn Controller>>>,
     ) -> Result<Self> {
-        let source = match policies.last() {
-            Some(entry) => Source::Policy((entry.load)()?),
+        let policies = Policies::new(policies);
+        let source = match policies.load() {
+            Some(policy) => Source::Policy(policy?),
             None => Source::Steered(Steered::new(context.database().clone())),
         };
         let mut camera = Camera::default();
@@ -89,16 +75,12 @@ impl Viewer {
         }
         Ok(Viewer {
             timeline: Timeline::new(Playthrough::new(&context, 0)),
-            chosen: policies.len().saturating_sub(1),
             context,
             source,
             policies,
             clip_frame: 0,
-            playing: true,
-            speed: 1.0,
-            owed: 0.0,
+            transport: Transport::default(),
             camera,
-            follow: true,
             grabbed: None,
             search: true,
             found: Vec::new(),
@@ -113,8 +95,15 @@ impl Viewer {
     /// Draws the window and takes its input.
     pub fn show(&mut self, ui: &mut Ui) {
         self.keys(ui);
-        self.pass_time(ui);
-        egui::Panel::bottom("transport").show(ui, |ui| self.transport(ui));
+        for _ in 0..self.transport.due(ui) {
+            self.forward();
+        }
+        let (frame, frames) = (self.frame(), self.frames());
+        let bar = egui::Panel::bottom("transport");
+        let seek = bar.show(ui, |ui| self.transport.show(ui, frame, frames));
+        if let Some(seek) = seek.inner {
+            self.seek(seek);
+        }
         egui::Panel::right("why")
             .default_size(300.0)
             .show(ui, |ui| {
@@ -124,7 +113,7 @@ impl Viewer {
         egui::CentralPanel::default()
             .frame(frame)
             .show(ui, |ui| self.world(ui));
-        if self.playing {
+        if self.transport.playing {
             ui.ctx().request_repaint();
         }
     }
@@ -138,27 +127,19 @@ impl Viewer {
     }
 
     /// What has been played.
-    pub fn timeline(&self) -> &Timeline {
+    pub fn timeline(&self) -> &Timeline<Playthrough> {
         &self.timeline
     }
 
     fn keys(&mut self, ui: &Ui) {
-        // Keys that a widget waits for are the widget's.
-        if ui.ctx().memory(|memory| memory.focused().is_some()) {
+        if transport::keys_are_taken(ui) {
             return;
         }
-        let pressed = |key| ui.input(|input| input.key_pressed(key));
-        if pressed(Key::Space) {
-            self.playing = !self.playing;
-        }
-        if let Source::Steered(_) = self.source {
-            return self.steer(ui);
-        }
-        if pressed(Key::ArrowRight) {
-            self.step(1);
-        }
-        if pressed(Key::ArrowLeft) {
-            self.step(-1);
+        let seek = self.transport.keys(ui);
+        match (&self.source, seek) {
+            (Source::Steered(_), _) => self.steer(ui),
+            (_, Some(seek)) => self.seek(seek),
+            (_, None) => {}
         }
     }
 
@@ -205,30 +186,23 @@ impl Viewer {
         self.timeline.change().set_target(target);
     }
 
-    fn pass_time(&mut self, ui: &Ui) {
-        if !self.playing {
-            return;
-        }
-        let passed = ui.input(|input| input.stable_dt);
-        self.owed = (self.owed + passed * RATE * self.speed).min(CATCH_UP);
-        while self.owed >= 1.0 {
-            self.owed -= 1.0;
-            self.forward();
-        }
-    }
-
     /// A frame on.
     fn forward(&mut self) {
         match self.source.controller() {
             Some(controller) => {
-                if let Err(error) = self.timeline.forward(&self.context, controller) {
+                let advanced = self.timeline.forward(|now| {
+                    let mut next = now.clone();
+                    next.advance(&self.context, controller)?;
+                    Ok(next)
+                });
+                if let Err(error) = advanced {
                     self.problem = Some(format!("{error:#}"));
-                    self.playing = false;
+                    self.transport.playing = false;
                 }
             }
             None => self.clip_frame = (self.clip_frame + 1) % self.frames(),
         }
-        if self.follow {
+        if self.transport.follow {
             self.camera.follow(self.shown().at, FOLLOW);
         }
     }
@@ -248,51 +222,24 @@ impl Viewer {
         }
     }
 
+    /// Stops at another frame.
+    fn seek(&mut self, seek: Seek) {
+        self.transport.playing = false;
+        match seek {
+            Seek::Next => self.forward(),
+            Seek::Previous => self.go_to(self.frame().saturating_sub(1)),
+            Seek::To(frame) => self.go_to(frame),
+        }
+    }
+
     fn go_to(&mut self, frame: usize) {
-        self.playing = false;
         match self.source {
             Source::Clip(_) => self.clip_frame = frame,
             _ => self.timeline.go_to(frame),
         }
-        if self.follow {
+        if self.transport.follow {
             self.camera.follow(self.shown().at, 1.0);
         }
-    }
-
-    /// A single step, forward or back.
-    fn step(&mut self, frames: isize) {
-        self.playing = false;
-        match frames > 0 {
-            true => self.forward(),
-            false => self.go_to(self.frame().saturating_sub(1)),
-        }
-    }
-
-    fn transport(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
-            let play = if self.playing { "Pause" } else { "Play" };
-            if ui.button(play).on_hover_text("Space").clicked() {
-                self.playing = !self.playing;
-            }
-            if ui.button("Back").on_hover_text("Left arrow").clicked() {
-                self.step(-1);
-            }
-            if ui.button("Step").on_hover_text("Right arrow").clicked() {
-                self.step(1);
-            }
-            ui.label("Speed");
-            let speed = egui::Slider::new(&mut self.speed, 0.1..=4.0).logarithmic(true);
-            ui.add(speed.max_decimals(2));
-            ui.checkbox(&mut self.follow, "Follow");
-            let mut frame = self.frame();
-            let last = self.frames() - 1;
-            ui.spacing_mut().slider_width = (ui.available_width() - 110.0).max(60.0);
-            let scrubber = egui::Slider::new(&mut frame, 0..=last)
-                .custom_formatter(|frame, _| format!("{:.2} s", frame / f64::from(RATE)));
-            if ui.add(scrubber).changed() {
-                self.go_to(frame);
-            }
-        });
     }
 
     fn why(&mut self, ui: &mut Ui) {
@@ -323,24 +270,14 @@ impl Viewer {
     }
 
     fn choose_policy(&mut self, ui: &mut Ui) {
-        let mut chosen = self.chosen;
-        egui::ComboBox::from_label("Checkpoint")
-            .selected_text(&self.policies[chosen].name)
-            .show_ui(ui, |ui| {
-                for (index, entry) in self.policies.iter().enumerate() {
-                    ui.selectable_value(&mut chosen, index, &entry.name);
-                }
-            });
-        if chosen != self.chosen {
-            match (self.policies[chosen].load)() {
-                Ok(policy) => {
-                    self.source = Source::Policy(policy);
-                    self.chosen = chosen;
-                    self.problem = None;
-                    self.timeline.change();
-                }
-                Err(error) => self.problem = Some(format!("{error:#}")),
+        match self.policies.show(ui) {
+            Some(Ok(policy)) => {
+                self.source = Source::Policy(policy);
+                self.problem = None;
+                self.timeline.change();
             }
+            Some(Err(error)) => self.problem = Some(format!("{error:#}")),
+            None => {}
         }
         if ui.button("Next episode").clicked() {
             let next = self.timeline.now().episode + 1;
@@ -353,7 +290,7 @@ impl Viewer {
         let steered = matches!(self.source, Source::Steered(_));
         if ui.selectable_label(steered, "Steer").clicked() && !steered {
             self.source = Source::Steered(Steered::new(self.context.database().clone()));
-            self.playing = true;
+            self.transport.playing = true;
         }
         ui.small("Arrow keys or WASD walk, with shift run.");
         ui.separator();
@@ -381,7 +318,7 @@ impl Viewer {
         if response.clicked() {
             self.source = Source::Clip(index);
             self.clip_frame = 0;
-            self.playing = true;
+            self.transport.playing = true;
             self.camera.follow(self.clip_shown(index).at, 1.0);
         }
     }
@@ -474,10 +411,16 @@ impl Viewer {
             return;
         };
         match touch {
-            Some(PointerAction::Click(at)) => self.timeline.change().set_target(at),
-            Some(PointerAction::Press(at)) => self.grabbed = self.obstacle(at),
-            Some(PointerAction::Drag(at)) => {
-                if let Some((slot, [x, z])) = self.grabbed {
+            Some(PointerAction::Click(ray)) => {
+                if let Some(at) = ray.ground() {
+                    self.timeline.change().set_target(at);
+                }
+            }
+            Some(PointerAction::Press(ray)) => {
+                self.grabbed = ray.ground().and_then(|at| self.obstacle(at));
+            }
+            Some(PointerAction::Drag(ray)) => {
+                if let (Some((slot, [x, z])), Some(at)) = (self.grabbed, ray.ground()) {
                     self.timeline
                         .change()
                         .move_obstacle(slot, [at[0] - x, at[1] - z]);

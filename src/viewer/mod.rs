@@ -1,15 +1,20 @@
-//! The window: a controller at work, and why it does what it does.
+//! The windows: a controller at work, and why it does what it does; a simulated body, to be pushed; all
+//! environments of a training.
 
 pub mod app;
+pub mod body_app;
 #[cfg(feature = "gamepad")]
 pub mod gamepad;
 pub mod maps;
 pub mod pace;
+pub mod policies;
 pub mod runners_up;
 pub mod screen;
 pub mod source;
 pub mod timeline;
+pub mod transport;
 pub mod watch;
 pub mod window;
 
 pub use app::Viewer;
+pub use body_app::BodyViewer;

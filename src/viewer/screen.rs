@@ -1,6 +1,7 @@
 //! The part of the window that shows the scene.
 
 use crate::gpu::Gpu;
+use crate::view::camera::Ray;
 use crate::view::painter::Drawable;
 use crate::view::{Camera, RenderTarget, Renderer, Scene};
 use eframe::egui::{self, Sense, TextureId, Ui, Vec2};
@@ -27,15 +28,15 @@ pub struct Screen {
     scale: f32,
 }
 
-/// What the pointer did on the ground, m.
+/// What the pointer did, and where.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PointerAction {
-    /// Pressed and released at a point.
-    Click([f32; 2]),
+    /// Pressed and released.
+    Click(Ray),
     /// Pressed, about to drag.
-    Press([f32; 2]),
-    /// Moved to a point while pressed.
-    Drag([f32; 2]),
+    Press(Ray),
+    /// Held while pressed.
+    Drag(Ray),
     /// Released after a drag.
     Release,
 }
@@ -82,23 +83,23 @@ impl Screen {
         }
         let aspect = points.x / points.y;
         let pointer = response.interact_pointer_pos();
-        let on_ground = |camera: &Camera| {
+        let ray = |camera: &Camera| {
             let place = (pointer? - response.rect.center()) / (0.5 * response.rect.size());
-            camera.ground([place.x, -place.y].into(), aspect)
+            Some(camera.ray([place.x, -place.y].into(), aspect))
         };
         let dragged = response.drag_delta();
         if response.drag_stopped() {
             return Some(PointerAction::Release);
         }
         if response.clicked() {
-            return on_ground(camera).map(PointerAction::Click);
+            return ray(camera).map(PointerAction::Click);
         }
         if response.drag_started() && response.dragged_by(egui::PointerButton::Primary) {
             // Where the button went down, not where the drag was noticed.
-            return on_ground(camera).map(PointerAction::Press);
+            return ray(camera).map(PointerAction::Press);
         }
         if grabbed {
-            return on_ground(camera).map(PointerAction::Drag);
+            return ray(camera).map(PointerAction::Drag);
         }
         if response.dragged_by(egui::PointerButton::Secondary) {
             let metre = camera.distance * PAN;

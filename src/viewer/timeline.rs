@@ -1,7 +1,5 @@
 //! What has been played, to go back to.
 
-use crate::train::controller::Controller;
-use crate::view::playthrough::{Playthrough, PlaythroughContext};
 use anyhow::Result;
 use std::collections::VecDeque;
 
@@ -10,15 +8,15 @@ const KEPT: usize = 9000;
 
 /// Every frame of a playthrough with all that decides the next: going on from an earlier one plays the
 /// same again, unless something is changed there.
-pub struct Timeline {
-    moments: VecDeque<Playthrough>,
+pub struct Timeline<M> {
+    moments: VecDeque<M>,
     /// The one shown.
     at: usize,
 }
 
-impl Timeline {
+impl<M> Timeline<M> {
     /// A timeline of one frame.
-    pub fn new(first: Playthrough) -> Timeline {
+    pub fn new(first: M) -> Timeline<M> {
         Timeline {
             moments: VecDeque::from([first]),
             at: 0,
@@ -26,12 +24,12 @@ impl Timeline {
     }
 
     /// The shown frame.
-    pub fn now(&self) -> &Playthrough {
+    pub fn now(&self) -> &M {
         &self.moments[self.at]
     }
 
     /// The moment shown, to change: what came after it is forgotten.
-    pub fn change(&mut self) -> &mut Playthrough {
+    pub fn change(&mut self) -> &mut M {
         self.moments.truncate(self.at + 1);
         &mut self.moments[self.at]
     }
@@ -56,18 +54,13 @@ impl Timeline {
         self.at = at.min(self.moments.len() - 1);
     }
 
-    /// A frame on: the recorded one, or at the end a new one.
+    /// A frame on: the recorded one, or at the end the one that `next` makes of it.
     ///
     /// # Errors
-    /// The controller's.
-    pub fn forward(
-        &mut self,
-        context: &PlaythroughContext,
-        controller: &dyn Controller,
-    ) -> Result<()> {
+    /// Those of `next`.
+    pub fn forward(&mut self, next: impl FnOnce(&M) -> Result<M>) -> Result<()> {
         if self.at + 1 == self.moments.len() {
-            let mut next = self.now().clone();
-            next.advance(context, controller)?;
+            let next = next(self.now())?;
             self.moments.push_back(next);
             if self.moments.len() > KEPT {
                 self.moments.pop_front();

@@ -9,7 +9,7 @@ use crate::gpu::Gpu;
 use crate::motion::database::Database;
 use crate::train::metrics::UpdateMetrics;
 use crate::view::painter::Drawable;
-use crate::view::{Camera, Crowd, Scene};
+use crate::view::{BodyCrowd, Camera, Crowd, Scene};
 use anyhow::Result;
 use eframe::egui::{self, Ui};
 use eframe::egui_wgpu::RenderState;
@@ -44,14 +44,23 @@ fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
     of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// What a training by motion matching is of.
+pub struct WatchedMotion {
+    /// The motion.
+    pub database: Arc<Database>,
+    /// The task with its choices.
+    pub task: LocomotionTask,
+    /// Number of environments.
+    pub envs: usize,
+}
+
 /// The window of a watched training.
 pub struct Crowded {
-    database: Arc<Database>,
-    task: LocomotionTask,
-    envs: usize,
+    /// Nothing where bodies are simulated.
+    motion: Option<WatchedMotion>,
     watch: Arc<Watch>,
     /// Once the environments are open.
-    crowd: Option<Crowd>,
+    crowd: Option<Box<dyn Drawable>>,
     camera: Camera,
     screen: Screen,
     pace: Pace,
@@ -62,15 +71,11 @@ impl Crowded {
     pub fn new(
         gpu: &Gpu,
         window: &RenderState,
-        database: Arc<Database>,
-        task: LocomotionTask,
-        envs: usize,
+        motion: Option<WatchedMotion>,
         watch: Arc<Watch>,
     ) -> Crowded {
         Crowded {
-            database,
-            task,
-            envs,
+            motion,
             watch,
             crowd: None,
             camera: Camera::default(),
@@ -93,7 +98,7 @@ impl Crowded {
                 return;
             }
             let scene = Scene::default();
-            let crowd = self.crowd.as_ref().map(|crowd| crowd as &dyn Drawable);
+            let crowd = self.crowd.as_deref();
             self.screen.show(ui, &scene, crowd, &mut self.camera, false);
         });
         let next = self.pace.next(&self.screen.renderer.queue);
@@ -102,12 +107,29 @@ impl Crowded {
 
     fn open(&mut self) {
         let view = lock(&self.watch.view).take();
-        if let Some(view) = view {
-            let renderer = &self.screen.renderer;
-            let crowd = Crowd::new(renderer, &self.database, view, &self.task, self.envs);
-            self.camera.distance = 8.0 + 0.6 * crowd.side;
-            self.camera.pitch = 0.5;
-            self.crowd = Some(crowd);
+        let Some((crowd, side)) = view.and_then(|view| self.crowd_of(view)) else {
+            return;
+        };
+        self.camera.distance = 8.0 + 0.6 * side;
+        self.camera.pitch = 0.5;
+        self.crowd = Some(crowd);
+    }
+
+    /// What draws the environments, and the side of the square that they fill, m.
+    fn crowd_of(&self, view: LiveView) -> Option<(Box<dyn Drawable>, f32)> {
+        let renderer = &self.screen.renderer;
+        match view {
+            LiveView::Bodies(view) => {
+                let crowd = BodyCrowd::new(renderer, view);
+                let side = crowd.side;
+                Some((Box::new(crowd), side))
+            }
+            LiveView::Locomotion(view) => {
+                let of = self.motion.as_ref()?;
+                let crowd = Crowd::new(renderer, &of.database, view, &of.task, of.envs);
+                let side = crowd.side;
+                Some((Box::new(crowd), side))
+            }
         }
     }
 }

@@ -1,10 +1,13 @@
 //! Opens windows, on the device that everything else uses.
 
-use super::app::{PolicyEntry, Viewer};
-use super::watch::{Crowded, Watch};
-use crate::env::locomotion::LocomotionTask;
+use super::app::Viewer;
+use super::body_app::BodyViewer;
+use super::policies::PolicyEntry;
+use super::watch::{Crowded, Watch, WatchedMotion};
 use crate::gpu::Gpu;
-use crate::motion::database::Database;
+use crate::train::body_policy::BodyPolicy;
+use crate::train::controller::Controller;
+use crate::view::body_playthrough::BodyContext;
 use crate::view::playthrough::PlaythroughContext;
 use anyhow::{Context, Result, anyhow};
 use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
@@ -22,6 +25,12 @@ pub trait Contents {
 impl Contents for Viewer {
     fn show(&mut self, ui: &mut egui::Ui) {
         Viewer::show(self, ui);
+    }
+}
+
+impl Contents for BodyViewer {
+    fn show(&mut self, ui: &mut egui::Ui) {
+        BodyViewer::show(self, ui);
     }
 }
 
@@ -69,29 +78,41 @@ pub fn play(
     gpu: &Gpu,
     title: &str,
     context: PlaythroughContext,
-    policies: Vec<PolicyEntry>,
+    policies: Vec<PolicyEntry<Box<dyn Controller>>>,
 ) -> Result<()> {
     let viewer = |window: &RenderState| Viewer::new(gpu, window, context, policies);
     let over = Arc::new(AtomicBool::new(false));
     open(gpu, title, over, |window| Ok(Box::new(viewer(window)?)))
 }
 
-/// Shows a training of `envs` environments until it is `over` or its window is closed.
+/// Shows a simulated body until its window is closed.
+///
+/// # Errors
+/// There is no display, a policy cannot be loaded, or the GPU was lost.
+pub fn play_body(
+    gpu: &Gpu,
+    title: &str,
+    context: BodyContext,
+    policies: Vec<PolicyEntry<BodyPolicy>>,
+) -> Result<()> {
+    let viewer = |window: &RenderState| BodyViewer::new(gpu, window, context, policies);
+    let over = Arc::new(AtomicBool::new(false));
+    open(gpu, title, over, |window| Ok(Box::new(viewer(window)?)))
+}
+
+/// Shows a training until it is `over` or its window is closed; `motion` says what it is of where that is
+/// motion matching.
 ///
 /// # Errors
 /// There is no display, or the GPU was lost.
 pub fn watch(
     gpu: &Gpu,
-    database: Arc<Database>,
-    task: LocomotionTask,
-    envs: usize,
+    motion: Option<WatchedMotion>,
     watch: Arc<Watch>,
     over: Arc<AtomicBool>,
 ) -> Result<()> {
     open(gpu, "footwork: training", over, |window| {
-        Ok(Box::new(Crowded::new(
-            gpu, window, database, task, envs, watch,
-        )))
+        Ok(Box::new(Crowded::new(gpu, window, motion, watch)))
     })
 }
 

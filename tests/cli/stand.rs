@@ -30,7 +30,6 @@ fn a_simulated_body_is_trained_and_evaluated() {
     for (words, part) in [
         ("eval run --baseline", "--baseline is for motion matching"),
         ("eval run --planner 3", "--planner is for motion matching"),
-        ("play run", "`play` shows motion matching"),
     ] {
         place.refused(words, 2, &[part]);
     }
@@ -60,7 +59,6 @@ fn choices_that_a_simulated_body_does_not_have_are_refused() {
             "--set task.min_push=20",
             "min_push must not exceed max_push",
         ),
-        ("--watch", "--watch shows motion matching"),
     ] {
         place.refused(&format!("{TRAIN} {rest} --out run"), 2, &[part]);
     }

@@ -59,6 +59,41 @@ fn ended(child: &mut Child, within: Duration) -> Option<i32> {
     None
 }
 
+/// A short training of a simulated body.
+const BODY: &str = "--envs 16 --set ppo.rollout_length=8 --set ppo.minibatch_size=64 \
+                    --set amp.minibatch_size=32 --set amp.replay_capacity=256 \
+                    --set amp.replay_per_update=64 --set amp.steps=2 --steps 512";
+
+#[test]
+fn simulated_bodies_are_watched_and_played() {
+    let (place, display) = (Place::new(), Display::open());
+    for (task, device) in [
+        ("imitate", "cpu"),
+        ("punch", "cpu"),
+        ("imitate", "lavapipe"),
+    ] {
+        let run = format!("{task}-{device}");
+        let words = format!("train {task} {BODY} --device {device} --watch --out {run}");
+        let mut child = start(&place, &display, &words);
+        let code = ended(&mut child, Duration::from_secs(300));
+        let told = complaint(child);
+        assert_eq!(code, Some(0), "{told}");
+        assert!(!told.contains("unwatched"), "{told}");
+        assert_eq!(place.json(&format!("{run}/summary.json"))["steps"], 512);
+    }
+    for run in ["imitate-cpu", "punch-cpu"] {
+        let words = format!("play {run}");
+        let mut child = start(&place, &display, &words);
+        let code = ended(&mut child, Duration::from_secs(8));
+        let told = complaint(child);
+        assert_eq!(code, None, "{words}: {told}");
+        assert!(
+            !told.contains("error:") && !told.contains("panicked"),
+            "{told}"
+        );
+    }
+}
+
 fn complaint(mut child: Child) -> String {
     // It may have ended by itself.
     let _ = child.kill();

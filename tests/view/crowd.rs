@@ -1,5 +1,6 @@
 use crate::{DATABASE, MATCHER, Picture, gpu};
 use footwork::container::Section;
+use footwork::env::live_view::LocomotionView;
 use footwork::env::locomotion::{EnvConfig, EnvState, LocomotionTask, Obstacles, Plane};
 use footwork::env::{EnvBatch, Transition};
 use footwork::gpu::{Array, Device};
@@ -28,6 +29,10 @@ fn state(batch: &EnvBatch, task: LocomotionTask) -> EnvState {
     EnvState::load(&mut section, 1, task.obstacles(), DATABASE.frames()).unwrap()
 }
 
+fn live_view(batch: &mut EnvBatch) -> LocomotionView {
+    batch.live_view().unwrap().unwrap().locomotion().unwrap()
+}
+
 /// Plays a step whose action is the mean trajectory.
 fn step(batch: &mut EnvBatch, device: &Device) {
     let spec = batch.spec();
@@ -49,7 +54,7 @@ fn one_of_a_crowd(device: Device) {
     let task = LocomotionTask::Plane(Plane::default());
     let mut batch = one(&device, task);
     let mut renderer = Renderer::new(&gpu());
-    let live_view = batch.live_view().unwrap().unwrap();
+    let live_view = live_view(&mut batch);
     let crowd = Crowd::new(&renderer, &DATABASE, live_view, &task, 1);
     for _ in 0..3 {
         step(&mut batch, &device);
@@ -101,7 +106,7 @@ fn obstacles_of_a_crowd(device: Device) {
     let task = LocomotionTask::Obstacles(Obstacles::FAST);
     let mut batch = one(&device, task);
     let mut renderer = Renderer::new(&gpu());
-    let live_view = batch.live_view().unwrap().unwrap();
+    let live_view = live_view(&mut batch);
     let crowd = Crowd::new(&renderer, &DATABASE, live_view, &task, 1);
     let state = state(&batch, task);
     let mut scene = Scene::default();
@@ -112,6 +117,7 @@ fn obstacles_of_a_crowd(device: Device) {
         scene.cuboids.push(Cuboid {
             centre: [at(boxes::X), 0.5 * height, at(boxes::Z)],
             half: [at(boxes::HALF_X), 0.5 * height, at(boxes::HALF_Z)],
+            rotation: Cuboid::UPRIGHT,
             colour: [0.42, 0.34, 0.30].map(|value| value * (0.75 + 0.5 * own)),
         });
     }

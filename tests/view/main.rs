@@ -1,5 +1,6 @@
 //! Pictures and windows, on lavapipe.
 
+mod body;
 mod compare;
 mod crowd;
 mod pictures;

@@ -8,9 +8,10 @@ use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state};
 use footwork::env::locomotion::{LocomotionTask, Obstacles, Plane};
 use footwork::kernels::termination;
 use footwork::motion::features::FRAMES_PER_STEP;
+use footwork::train::controller::Controller;
 use footwork::view::playthrough::Playthrough;
 use footwork::viewer::Viewer;
-use footwork::viewer::app::PolicyEntry;
+use footwork::viewer::policies::PolicyEntry;
 use footwork::viewer::window::shared;
 
 fn plane() -> LocomotionTask {
@@ -19,21 +20,24 @@ fn plane() -> LocomotionTask {
 /// A point of the ground in front of the character.
 const GROUND: Pos2 = Pos2::new(250.0, 430.0);
 
-fn walker() -> PolicyEntry {
+fn walker() -> PolicyEntry<Box<dyn Controller>> {
     PolicyEntry {
         name: "walker".into(),
         load: Box::new(|| Ok(Box::new(Walker))),
     }
 }
 
-fn broken() -> PolicyEntry {
+fn broken() -> PolicyEntry<Box<dyn Controller>> {
     PolicyEntry {
         name: "broken".into(),
         load: Box::new(|| anyhow::bail!("this checkpoint is damaged")),
     }
 }
 
-fn open(task: LocomotionTask, policies: Vec<PolicyEntry>) -> Harness<'static, Viewer> {
+fn open(
+    task: LocomotionTask,
+    policies: Vec<PolicyEntry<Box<dyn Controller>>>,
+) -> Harness<'static, Viewer> {
     let gpu = gpu();
     let window = create_render_state(shared(&gpu), Default::default());
     let viewer = Viewer::new(&gpu, &window, context(task), policies).unwrap();

@@ -5,7 +5,7 @@ use super::env_state::EnvState;
 use super::env_state::gather;
 use super::kernel_params::KernelParams;
 use crate::container::{Section, SectionError};
-use crate::env::live_view::{LiveView, State, States};
+use crate::env::live_view::{LiveView, LocomotionView, State, States};
 use crate::env::spec::EnvSpec;
 use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::Array;
@@ -295,7 +295,8 @@ impl VecEnv for CpuLocomotion {
         state.set(&self.state_f32, &self.state_u32, &self.boxes);
         let state = Arc::new(Mutex::new(state));
         self.live_view = Some(state.clone());
-        Ok(Some(LiveView::Cpu(States(vec![state]))))
+        let view = LocomotionView::Cpu(States(vec![state]));
+        Ok(Some(LiveView::Locomotion(view)))
     }
 
     fn save(&self, to: &mut Section) -> anyhow::Result<()> {

@@ -4,7 +4,7 @@ use super::config::{EnvConfig, STAT_NAMES};
 use super::env_state::EnvState;
 use super::kernel_params::KernelParams;
 use crate::container::{Section, SectionError};
-use crate::env::live_view::{Buffers, LiveView};
+use crate::env::live_view::{Buffers, LiveView, LocomotionView};
 use crate::env::spec::EnvSpec;
 use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::{Array, Buffer, Gpu};
@@ -252,14 +252,16 @@ impl VecEnv for GpuLocomotion {
     }
 
     fn live_view(&mut self) -> Result<Option<LiveView>> {
-        Ok(Some(LiveView::Gpu(Box::new(Buffers {
+        let buffers = Buffers {
             state_f32: self.state_f32.share(&self.gpu)?,
             state_u32: self.state_u32.share(&self.gpu)?,
             boxes: match self.params.task.obstacles() {
                 0 => None,
                 _ => Some(self.boxes.share(&self.gpu)?),
             },
-        }))))
+        };
+        let view = LocomotionView::Gpu(Box::new(buffers));
+        Ok(Some(LiveView::Locomotion(view)))
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {

@@ -1,11 +1,12 @@
 //! Stands the target of the tasks `punch` and `joystick` around the character. Shader:
 //! `shaders/humanoid/place_target.wgsl`.
 
-use super::punch_state::{FACING, MOVING, PUNCH_STATE};
+use super::punch_state::{FACING, FIRST, FIRST_SPEED, HIT_STEPS, MOVING, PUNCH_STATE};
 use crate::gpu::shader::place_target::constants::STREAM;
 use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::kernels::physics::strided::{gather, scatter};
 use crate::kernels::rng::{random4, uniform01};
+use glam::Vec2;
 use std::f32::consts::PI;
 
 crate::shader_params! {
@@ -93,6 +94,18 @@ pub fn place(env: usize, start: &mut [f32], state: &mut [f32], params: &Params) 
     let (facing_sin, facing_cos) = (2.0 * PI * uniform01(facing)).sin_cos();
     state[FACING..FACING + 2].copy_from_slice(&[facing_cos, facing_sin]);
     state[MOVING..MOVING + 2].copy_from_slice(&[cos, sin]);
+}
+
+/// Stands the target upright at a point of the ground, m, as if it had never been hit.
+pub fn stand_at(at: [f32; 2], q: &mut [f32], v: &mut [f32], state: &mut [f32], params: &Params) {
+    let way = Vec2::from(at) - Vec2::new(q[0], q[1]);
+    let first = params.target_q as usize;
+    q[first..first + 7].copy_from_slice(&[at[0], at[1], params.height, 1.0, 0.0, 0.0, 0.0]);
+    v[params.target_v as usize..][..6].fill(0.0);
+    state[MOVING..MOVING + 2].copy_from_slice(&way.normalize_or(Vec2::X).to_array());
+    for touched in [HIT_STEPS, FIRST, FIRST_SPEED] {
+        state[touched] = 0.0;
+    }
 }
 
 /// Which way the root faces on the ground, rad.

@@ -1,14 +1,17 @@
 //! Adversarial motion priors (Peng et al. 2021): a discriminator learns to tell recorded motion from that
 //! of the agents, who are rewarded for being taken for recordings.
 //!
-//! [`Amp`] holds what may be chosen, [`discriminator`] learns and rewards, [`learner`] is PPO with both.
+//! [`Amp`] holds what may be chosen, [`discriminator`] learns and rewards, [`learner`] is PPO with both; a
+//! [`frozen_discriminator`] is what is left when learning is over.
 
 pub mod discriminator;
+pub mod frozen_discriminator;
 pub mod learner;
 mod loss;
 mod replay;
 
 pub use discriminator::Discriminator;
+pub use frozen_discriminator::FrozenDiscriminator;
 pub use learner::AmpLearner;
 use serde::{Deserialize, Serialize};
 

@@ -4,19 +4,18 @@ use super::motions::{self, Performance};
 use super::presets::fast;
 use crate::env::humanoid::imitate::ImitateTask;
 use crate::env::humanoid::imitate::evaluate::{ImitateReport, evaluate};
-use crate::env::humanoid::task::{CpuHumanoidEnv, EpisodeRules, open, play, spec};
+use crate::env::humanoid::task::{EpisodeRules, open, spec};
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::nn::Policy;
 use crate::nn::layer::Activation;
 use crate::nn::network::NetworkConfig;
-use crate::physics::model::Model;
-use crate::physics::motion_clip::MotionClip;
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
 use crate::rl::Algorithm;
 use crate::rl::amp::Amp;
 use crate::rl::ppo::Ppo;
+use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::task::{Loaded, Task, TaskEntry};
@@ -34,9 +33,6 @@ pub const ENTRY: TaskEntry = TaskEntry {
     load,
     ablations: &[],
 };
-
-/// Seed of the evaluation episodes: the same for every policy.
-const EPISODES_SEED: u32 = 0x4556_414c;
 
 /// The choices of learning of every task that has a discriminator.
 pub fn ppo() -> Ppo {
@@ -196,11 +192,9 @@ impl Task for ImitateTraining {
         figures::draw_curve(run, rows)
     }
 
-    fn motion(&self, policy: &Policy, episode: u32) -> Option<(Arc<Model>, MotionClip)> {
-        let mean = |observation: &[f32]| policy.mean(observation);
-        let seed = EPISODES_SEED.wrapping_add(episode);
-        let mut envs = CpuHumanoidEnv::unstaggered(self.task(seed), 0..1, seed);
-        let motion = play::record(&mut envs, &mean, "imitate");
-        Some((self.library.model().clone(), motion))
+    fn body(&self) -> Option<BodyEpisodes> {
+        let (rules, library) = (self.rules, self.library.clone());
+        let task = move |seed| ImitateTask::new(&rules, &library, seed);
+        Some(BodyEpisodes::new(task, Some(&self.library)))
     }
 }

@@ -5,18 +5,17 @@ use super::imitate::ppo;
 use super::motions::{self, Performance};
 use crate::env::humanoid::punch::evaluate::{PunchReport, evaluate};
 use crate::env::humanoid::punch::{Punch, PunchTask};
-use crate::env::humanoid::task::{CpuHumanoidEnv, open, play, spec};
+use crate::env::humanoid::task::{open, spec};
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::kernels::humanoid::punch_observe;
 use crate::nn::Policy;
-use crate::physics::model::Model;
-use crate::physics::motion_clip::MotionClip;
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
 use crate::rl::Algorithm;
 use crate::rl::amp::Amp;
 use crate::rl::ppo::Ppo;
+use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::task::{Ablation, Loaded, Measure, Task, TaskEntry, Variant};
@@ -79,9 +78,6 @@ pub const JOYSTICK: TaskEntry = TaskEntry {
     ablations: &[],
     ..PUNCH
 };
-
-/// Seed of the evaluation episodes: the same for every policy.
-const EPISODES_SEED: u32 = 0x4556_414c;
 
 fn preset(_: Preset) -> TaskPreset {
     TaskPreset {
@@ -231,12 +227,10 @@ impl Task for PunchTraining {
         figures::draw_curve(run, rows)
     }
 
-    fn motion(&self, policy: &Policy, episode: u32) -> Option<(Arc<Model>, MotionClip)> {
-        let mean = |observation: &[f32]| policy.mean(observation);
-        let seed = EPISODES_SEED.wrapping_add(episode);
-        let task = self.task(&self.punch.evaluated(), seed);
-        let mut envs = CpuHumanoidEnv::unstaggered(task, 0..1, seed);
-        let motion = play::record(&mut envs, &mean, "punch");
-        Some((Arc::new(scenes::humanoid_and_box()), motion))
+    fn body(&self) -> Option<BodyEpisodes> {
+        let (punch, joystick) = (self.punch.evaluated(), self.joystick);
+        let library = self.library.clone();
+        let task = move |seed| PunchTask::new(&punch, joystick, &library, seed);
+        Some(BodyEpisodes::new(task, Some(&self.library)))
     }
 }

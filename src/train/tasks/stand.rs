@@ -2,7 +2,7 @@
 
 use super::motions;
 use super::presets::fast;
-use crate::env::humanoid::stand::evaluate::{StandReport, evaluate, record};
+use crate::env::humanoid::stand::evaluate::{StandReport, evaluate};
 use crate::env::humanoid::stand::{Stand, StandTask};
 use crate::env::humanoid::task::{open, spec};
 use crate::env::{EnvBatch, EnvSpec};
@@ -10,10 +10,9 @@ use crate::gpu::Device;
 use crate::nn::Policy;
 use crate::nn::layer::Activation;
 use crate::nn::network::NetworkConfig;
-use crate::physics::model::Model;
-use crate::physics::motion_clip::MotionClip;
 use crate::physics::scenes;
 use crate::rl::ppo::Ppo;
+use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::task::{Loaded, Task, TaskEntry};
@@ -31,9 +30,6 @@ pub const ENTRY: TaskEntry = TaskEntry {
     load,
     ablations: &[],
 };
-
-/// Seed of the evaluation episodes: the same for every policy.
-const EPISODES_SEED: u32 = 0x4556_414c;
 
 /// There is no paper whose settings to take: both presets are one.
 fn preset(_: Preset) -> TaskPreset {
@@ -163,9 +159,11 @@ impl Task for StandTraining {
         figures::draw_curve(run, rows)
     }
 
-    fn motion(&self, policy: &Policy, episode: u32) -> Option<(Arc<Model>, MotionClip)> {
-        let mean = |observation: &[f32]| policy.mean(observation);
-        let motion = record(&self.stand, &mean, EPISODES_SEED.wrapping_add(episode));
-        Some((Arc::new(scenes::humanoid()), motion))
+    fn body(&self) -> Option<BodyEpisodes> {
+        let stand = self.stand;
+        Some(BodyEpisodes::new(
+            move |seed| StandTask::new(&stand, seed),
+            None,
+        ))
     }
 }

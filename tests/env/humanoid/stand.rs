@@ -5,10 +5,11 @@
 use crate::support::inputs::{Draw, POISON, gpu};
 use footwork::container::Section;
 use footwork::env::humanoid::action::rest_action;
-use footwork::env::humanoid::stand::evaluate::{evaluate, record};
+use footwork::env::humanoid::stand::evaluate::evaluate;
 use footwork::env::humanoid::stand::{Stand, StandTask};
 use footwork::env::humanoid::starts::{START_STATES, StartSpread, lowest_point, start_states};
-use footwork::env::humanoid::task::{EpisodeRules, open};
+use footwork::env::humanoid::task::play::record;
+use footwork::env::humanoid::task::{CpuHumanoidEnv, EpisodeRules, open};
 use footwork::env::{EnvBatch, Stats, Transition, VecEnv, termination};
 use footwork::gpu::{Array, Device};
 use footwork::kernels::humanoid::end_episode::{self, has_fallen};
@@ -379,7 +380,9 @@ fn an_evaluation_tells_how_long_bodies_stay_up() {
     assert!((0.5..1.0).contains(&report.mean_uprightness), "{report:?}");
     assert_eq!(report, evaluate(&stand, &policy, 20, 4));
     assert_ne!(report, evaluate(&stand, &policy, 20, 5));
-    let motion = record(&stand, &policy, 4);
+    let task = Arc::new(StandTask::new(&stand, 4));
+    let mut envs = CpuHumanoidEnv::unstaggered(task, 0..1, 4);
+    let motion = record(&mut envs, &policy, "stand");
     assert!((2..=300).contains(&motion.frames) && motion.rate == 30.0);
 }
 

@@ -7,12 +7,14 @@ use footwork::container::Section;
 use footwork::env::humanoid::imitate::ImitateTask;
 use footwork::env::humanoid::punch::{Punch, PunchTask};
 use footwork::env::humanoid::recorded::{demonstrations, observe};
-use footwork::env::humanoid::task::{EpisodeRules, HumanoidTask, open};
+use footwork::env::humanoid::task::{CpuHumanoidEnv, EpisodeRules, HumanoidTask, open};
 use footwork::env::{Transition, VecEnv, termination};
 use footwork::gpu::{Array, Device};
 use footwork::motion::synthetic::{perform_boxing, perform_walk};
 use footwork::physics::motion_library::MotionLibrary;
 use footwork::physics::scenes;
+use footwork::rl::amp::{Amp, Discriminator, DiscriminatorLoss, FrozenDiscriminator};
+use footwork::rl::rollout::Rollout;
 use std::sync::{Arc, LazyLock};
 
 static LIBRARY: LazyLock<Arc<MotionLibrary>> = LazyLock::new(|| {
@@ -178,6 +180,83 @@ fn demonstrations_are_drawn_by_weight() {
         "{walks} of 20000, {share}"
     );
     assert!(recorded.windows.iter().all(|value| value.is_finite()));
+}
+
+/// What a discriminator gives once it learns no more is what it gave.
+#[test]
+fn a_frozen_discriminator_rewards_as_it_did() {
+    let [imitate, ..] = tasks(10.0);
+    let mut envs = open(&Device::Cpu, imitate, 0..6, 1).unwrap();
+    let (spec, rest, steps) = (*envs.spec(), envs.rest_action(), 4);
+    let mut rollout = Rollout::new(&Device::Cpu, &spec, steps, 1);
+    rollout.action = Array::Host(rest.repeat(rollout.samples()));
+    for step in 0..steps {
+        rollout.observe(envs.as_mut(), step);
+        rollout.step(envs.as_mut(), step);
+    }
+    rollout.observe(envs.as_mut(), steps);
+    let running = |&end: &u32| end == termination::RUNNING;
+    assert!(rollout.termination.host().iter().all(running));
+    let recorded = Arc::new(demonstrations(&LIBRARY));
+    let mut rollouts = [rollout];
+    for loss in [DiscriminatorLoss::Bce, DiscriminatorLoss::Hinge] {
+        let amp = Amp {
+            loss,
+            heads: 3,
+            hidden: vec![32, 16],
+            minibatch_size: 64,
+            ..Amp::default()
+        };
+        let samples = rollouts[0].samples();
+        let mut learning = Discriminator::new(&amp, &recorded, &Device::Cpu, samples, 1).unwrap();
+        learning.reward(&mut rollouts);
+        learning.learn();
+        learning.reward(&mut rollouts);
+        let (mut own, mut section) = (Section::default(), Section::default());
+        learning.save(&mut own).unwrap();
+        section.put_section("discriminator", own);
+        let frozen = FrozenDiscriminator::load(&amp, &mut section.clone(), spec.style).unwrap();
+        let [rollout] = &rollouts;
+        let moments = rollout.observation.host().chunks_exact(spec.style);
+        let after = moments.clone().skip(spec.envs);
+        let given = rollout.style_reward.host();
+        for ((before, after), given) in moments.zip(after).zip(given) {
+            let reward = frozen.reward([before, after]);
+            assert!((reward - given).abs() < 1e-4, "{reward} {given}");
+            assert!((0.0..=1.0).contains(&frozen.share(reward)));
+        }
+        assert!(FrozenDiscriminator::load(&amp, &mut section, spec.style + 1).is_err());
+        assert!(FrozenDiscriminator::load(&amp, &mut Section::default(), spec.style).is_err());
+    }
+}
+
+/// A box that has been put elsewhere is as one that always stood there.
+#[test]
+fn a_moved_target_stands_where_it_was_put() {
+    let [_, _, joystick] = tasks(10.0);
+    let mut envs = CpuHumanoidEnv::unstaggered(joystick, 0..2, 4);
+    let rest = Array::Host(envs.rest_action().repeat(2));
+    let still = envs.batch.worlds[0].state.q.clone();
+    envs.move_target(1, [3.0, -4.0]);
+    assert_eq!(envs.batch.worlds[0].state.q, still);
+    let spec = *envs.spec();
+    let (mut reward, mut finals) = (
+        Array::zeroed(&Device::Cpu, 2),
+        Array::zeroed(&Device::Cpu, 2 * spec.observation.dim()),
+    );
+    let mut ends = Array::zeroed(&Device::Cpu, 2);
+    let out = Transition {
+        step: 0,
+        reward: &mut reward,
+        termination: &mut ends,
+        group: &mut Array::zeroed(&Device::Cpu, 2),
+        final_observation: &mut finals,
+    };
+    envs.step(&rest, 0, out);
+    let q = &envs.batch.worlds[1].state.q;
+    let target = &q[q.len() - 7..];
+    assert!((target[0] - 3.0).abs() < 1e-3 && (target[1] + 4.0).abs() < 1e-3);
+    assert!((target[2] - 0.9).abs() < 5e-3 && target[3] > 0.999);
 }
 
 /// The box stands where it was put until somebody touches it.

@@ -19,7 +19,7 @@ use crate::kernels::termination::SUCCESS;
 use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
-use crate::physics::simulator::Simulator;
+use crate::physics::simulator::{Simulator, SimulatorState};
 pub use choices::{FarReward, Hit, Punch};
 use std::sync::Arc;
 
@@ -203,6 +203,10 @@ impl HumanoidTask for PunchTask {
 
     fn begin(&self, env: usize, moment: &StepContext, start: &mut [f32], state: &mut [f32]) {
         place_target::place(env, start, state, &self.params.place(moment));
+    }
+
+    fn move_target(&self, at: [f32; 2], world: &mut SimulatorState, state: &mut [f32]) {
+        place_target::stand_at(at, &mut world.q, &mut world.v, state, &self.params.place);
     }
 
     fn observe(

@@ -1,10 +1,9 @@
 //! How well a policy stands: a number of episodes, played to their end on the CPU.
 
 use super::{Stand, StandTask};
-use crate::env::humanoid::task::play::{self, MeanPolicy, play_episodes};
+use crate::env::humanoid::task::play::{MeanPolicy, play_episodes};
 use crate::env::humanoid::task::{CpuHumanoidEnv, DT};
 use crate::kernels::termination;
-use crate::physics::motion_clip::MotionClip;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -21,14 +20,11 @@ pub struct StandReport {
     pub mean_uprightness: f64,
 }
 
-/// Environments whose first episodes have their full length.
-fn opened(stand: &Stand, episodes: usize, seed: u32) -> CpuHumanoidEnv {
-    CpuHumanoidEnv::unstaggered(Arc::new(StandTask::new(stand, seed)), 0..episodes, seed)
-}
-
 /// Plays `episodes` episodes, whose starts and pushes depend on `seed` alone.
 pub fn evaluate(stand: &Stand, policy: &MeanPolicy, episodes: usize, seed: u32) -> StandReport {
-    let found = play_episodes(&mut opened(stand, episodes, seed), policy, |_, _| ());
+    let task = Arc::new(StandTask::new(stand, seed));
+    let mut envs = CpuHumanoidEnv::unstaggered(task, 0..episodes, seed);
+    let found = play_episodes(&mut envs, policy, |_, _| ());
     // Of all statistics these are the third and the last.
     let (steps, upright) = (found.mean(2), found.mean(5));
     StandReport {
@@ -37,9 +33,4 @@ pub fn evaluate(stand: &Stand, policy: &MeanPolicy, episodes: usize, seed: u32) 
         mean_episode_s: steps * f64::from(DT),
         mean_uprightness: upright / f64::max(steps, 1.0),
     }
-}
-
-/// The motion of one episode, up to its end or its fall.
-pub fn record(stand: &Stand, policy: &MeanPolicy, seed: u32) -> MotionClip {
-    play::record(&mut opened(stand, 1, seed), policy, "stand")
 }

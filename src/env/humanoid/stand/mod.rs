@@ -18,6 +18,7 @@ use crate::physics::model::Model;
 use crate::physics::scenes;
 use crate::physics::simulator::Simulator;
 pub use choices::Stand;
+use glam::Vec2;
 use std::sync::Arc;
 
 /// Steps of which one has a push, and of which first ones it may be: pushes are from 30 to 60 steps
@@ -153,7 +154,7 @@ impl HumanoidTask for StandTask {
     fn act(&self, env: usize, moment: &StepContext, world: &mut SimulatedWorld) {
         let pushes = self.params.pushes(moment);
         let force = &mut world.external_forces[pushes.body as usize].linear;
-        [force.x, force.y] = random_pushes::push(env, &pushes);
+        *force += Vec2::from(random_pushes::push(env, &pushes)).extend(0.0);
     }
 
     fn reward(

@@ -3,7 +3,9 @@
 use super::common::Common;
 use super::humanoid_task::{HumanoidTask, StepContext};
 use crate::container::{Section, SectionError};
+use crate::env::body_view::{BodyStates, BodyView, BodyWorlds};
 use crate::env::humanoid::batch::{CpuSimulatorBatch, SimulatedWorld, SimulatorBatch};
+use crate::env::live_view::LiveView;
 use crate::env::spec::EnvSpec;
 use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::Array;
@@ -18,14 +20,15 @@ use crate::kernels::physics::solve_and_integrate::{
 use crate::kernels::physics::strided::{gather, scatter};
 use crate::kernels::termination;
 use crate::physics::simulator::Simulator;
+use crate::physics::spatial::Spatial;
 use anyhow::Result;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Environments of a task on the CPU.
 pub struct CpuHumanoidEnv {
     common: Common,
-    /// The physics.
+    /// The physics. External forces, a task's or somebody else's, last for a step.
     pub batch: CpuSimulatorBatch,
     /// Steps, return, measures and sums of each environment, see [`end_episode`].
     pub episodes: Vec<Vec<f32>>,
@@ -33,6 +36,8 @@ pub struct CpuHumanoidEnv {
     pub task_states: Vec<Vec<f32>>,
     /// `[envs][observation]` of this moment.
     observation: Vec<f32>,
+    /// Where to leave every step's state, if somebody watches.
+    live_view: Option<Arc<Mutex<BodyStates>>>,
 }
 
 /// What a world reads and writes in a step.
@@ -86,6 +91,7 @@ impl CpuHumanoidEnv {
             episodes,
             task_states,
             observation,
+            live_view: None,
         };
         envs.observe_all();
         envs
@@ -94,6 +100,14 @@ impl CpuHumanoidEnv {
     /// The task.
     pub fn task(&self) -> &dyn HumanoidTask {
         &*self.common.task
+    }
+
+    /// Puts the target of an environment elsewhere on the ground, m: see [`HumanoidTask::move_target`].
+    pub fn move_target(&mut self, env: usize, at: [f32; 2]) {
+        let world = &mut self.batch.worlds[env].state;
+        let state = &mut self.task_states[env];
+        self.common.task.move_target(at, world, state);
+        self.observe_all();
     }
 
     fn observe_all(&mut self) {
@@ -105,6 +119,16 @@ impl CpuHumanoidEnv {
                 simulator.kinematics(&world.state.q, &world.state.v);
                 common.observe(simulator, world, state, row);
             });
+    }
+
+    /// Leaves the state to whoever watches.
+    fn show(&self) {
+        if let Some(view) = &self.live_view {
+            let worlds = self.batch.worlds.iter();
+            let worlds = worlds.map(|world| (&world.state.q[..], &world.start[..]));
+            let mut states = view.lock().unwrap_or_else(PoisonError::into_inner);
+            states.set(worlds);
+        }
     }
 }
 
@@ -157,6 +181,7 @@ impl Common {
         set_targets(row.action, &self.action_scale, &mut world.targets);
         self.task.act(env, &params.now, world);
         world.advance(simulator, params.force_pairs);
+        world.external_forces.fill(Spatial::ZERO);
         simulator.kinematics(&world.state.q, &world.state.v);
         let mut measures = vec![0.0; self.measures];
         let task = &self.task;
@@ -239,6 +264,7 @@ impl VecEnv for CpuHumanoidEnv {
             common.play(env, simulator, world, row, &params);
         });
         self.common.step_counter += 1;
+        self.show();
     }
 
     fn stat_names(&self) -> &'static [&'static str] {
@@ -257,6 +283,16 @@ impl VecEnv for CpuHumanoidEnv {
         for episode in &mut self.episodes {
             episode[sums..].fill(0.0);
         }
+    }
+
+    fn live_view(&mut self) -> Result<Option<LiveView>> {
+        let states = Arc::new(Mutex::new(BodyStates::default()));
+        self.live_view = Some(states.clone());
+        self.show();
+        Ok(Some(LiveView::Bodies(BodyView {
+            model: self.common.batch.model.clone(),
+            worlds: BodyWorlds::Cpu(vec![states]),
+        })))
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {

@@ -3,7 +3,9 @@
 use super::common::Common;
 use super::humanoid_task::{GpuHumanoidTask, StepContext, TaskBuffers};
 use crate::container::{Section, SectionError};
+use crate::env::body_view::{BodyBuffers, BodyView, BodyWorlds};
 use crate::env::humanoid::batch::GpuSimulatorBatch;
+use crate::env::live_view::LiveView;
 use crate::env::spec::EnvSpec;
 use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::{Array, Buffer, Gpu};
@@ -153,6 +155,19 @@ impl VecEnv for GpuHumanoidEnv {
                 fields: self.stat_names().len() as u32,
             },
         );
+    }
+
+    fn live_view(&mut self) -> Result<Option<LiveView>> {
+        let (batch, gpu) = (&self.worlds.batch, &self.worlds.gpu);
+        let buffers = BodyBuffers {
+            envs: self.common.spec.envs,
+            poses: batch.poses.share(gpu)?,
+            starts: batch.starts.share(gpu)?,
+        };
+        Ok(Some(LiveView::Bodies(BodyView {
+            model: self.common.batch.model.clone(),
+            worlds: BodyWorlds::Gpu(Box::new(buffers)),
+        })))
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {

@@ -5,7 +5,7 @@ use crate::env::humanoid::batch::{GpuSimulatorBatch, SimulatedWorld};
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::termination;
 use crate::physics::model::Model;
-use crate::physics::simulator::Simulator;
+use crate::physics::simulator::{Simulator, SimulatorState};
 use std::sync::Arc;
 
 /// What the random numbers of a step depend on, besides the environment's number.
@@ -78,6 +78,9 @@ pub trait HumanoidTask: Send + Sync {
 
     /// Begins an episode: changes the start state that was drawn, `[nq + nv]`, and sets the task's.
     fn begin(&self, _env: usize, _moment: &StepContext, _start: &mut [f32], _state: &mut [f32]) {}
+
+    /// Puts the target elsewhere on the ground, m, if the task has one.
+    fn move_target(&self, _at: [f32; 2], _world: &mut SimulatorState, _state: &mut [f32]) {}
 
     /// Observes what the task adds.
     fn observe(

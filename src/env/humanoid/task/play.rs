@@ -17,26 +17,52 @@ pub fn play(
     policy: &MeanPolicy,
     mut after: impl FnMut(&CpuHumanoidEnv, &[u32]) -> bool,
 ) {
-    let (count, dim) = (envs.spec().rows(), envs.spec().observation.dim());
-    let mut observation = Array::Host(vec![0.0; count * dim]);
-    let mut reward = Array::Host(vec![0.0; count]);
-    let mut ends = Array::Host(vec![termination::RUNNING; count]);
-    let mut group = Array::Host(vec![0; count]);
-    let mut last = Array::Host(vec![0.0; count * dim]);
+    let mut step = PolicyStep::new(envs);
     for _ in 0..envs.task().rules().steps() {
-        envs.observe(&mut observation, 0);
-        let action = Array::Host(policy(observation.host()));
-        let out = Transition {
-            step: 0,
-            reward: &mut reward,
-            termination: &mut ends,
-            group: &mut group,
-            final_observation: &mut last,
-        };
-        envs.step(&action, 0, out);
-        if !after(envs, ends.host()) {
+        step.play(envs, policy);
+        if !after(envs, step.ends.host()) {
             return;
         }
+    }
+}
+
+/// A step of environments by a policy's mean.
+pub struct PolicyStep {
+    /// What was observed before it, `[rows][observation]`.
+    pub observation: Array,
+    /// `[rows]`
+    pub reward: Array,
+    /// How it ended, `[rows]`.
+    pub ends: Array<u32>,
+    group: Array<u32>,
+    last: Array,
+}
+
+impl PolicyStep {
+    /// Before the first step.
+    pub fn new(envs: &CpuHumanoidEnv) -> PolicyStep {
+        let (count, dim) = (envs.spec().rows(), envs.spec().observation.dim());
+        PolicyStep {
+            observation: Array::Host(vec![0.0; count * dim]),
+            reward: Array::Host(vec![0.0; count]),
+            ends: Array::Host(vec![termination::RUNNING; count]),
+            group: Array::Host(vec![0; count]),
+            last: Array::Host(vec![0.0; count * dim]),
+        }
+    }
+
+    /// Plays the next step.
+    pub fn play(&mut self, envs: &mut CpuHumanoidEnv, policy: &MeanPolicy) {
+        envs.observe(&mut self.observation, 0);
+        let action = Array::Host(policy(self.observation.host()));
+        let out = Transition {
+            step: 0,
+            reward: &mut self.reward,
+            termination: &mut self.ends,
+            group: &mut self.group,
+            final_observation: &mut self.last,
+        };
+        envs.step(&action, 0, out);
     }
 }
 

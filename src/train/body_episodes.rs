@@ -1,0 +1,35 @@
+//! A task of a simulated body, to be watched: an episode at a time.
+
+use crate::env::humanoid::task::{CpuHumanoidEnv, HumanoidTask};
+use crate::physics::motion_library::MotionLibrary;
+use std::sync::Arc;
+
+/// Seed of the evaluation episodes: the same for every policy.
+pub const EPISODES_SEED: u32 = 0x4556_414c;
+
+/// The evaluation episodes of a task of a simulated body.
+#[derive(Clone)]
+pub struct BodyEpisodes {
+    task: Arc<dyn Fn(u32) -> Arc<dyn HumanoidTask> + Send + Sync>,
+    /// What the body is to move like.
+    pub recordings: Option<Arc<MotionLibrary>>,
+}
+
+impl BodyEpisodes {
+    /// `task` makes the task whose episodes a seed decides.
+    pub fn new<T: HumanoidTask + 'static>(
+        task: impl Fn(u32) -> T + Send + Sync + 'static,
+        recordings: Option<&Arc<MotionLibrary>>,
+    ) -> BodyEpisodes {
+        BodyEpisodes {
+            task: Arc::new(move |seed| -> Arc<dyn HumanoidTask> { Arc::new(task(seed)) }),
+            recordings: recordings.cloned(),
+        }
+    }
+
+    /// One environment at the start of an episode.
+    pub fn open(&self, episode: u32) -> CpuHumanoidEnv {
+        let seed = EPISODES_SEED.wrapping_add(episode);
+        CpuHumanoidEnv::unstaggered((self.task)(seed), 0..1, seed)
+    }
+}

@@ -1,0 +1,217 @@
+//! A simulated body under a policy, step by step, for somebody to watch and to push.
+
+use super::reference::Reference;
+use crate::container::Section;
+use crate::env::VecEnv;
+use crate::env::humanoid::task::CpuHumanoidEnv;
+use crate::env::humanoid::task::play::PolicyStep;
+use crate::gpu::Array;
+use crate::kernels::humanoid::end_episode::LIMIT;
+use crate::kernels::termination;
+use crate::physics::collision::MAX_POINTS;
+use crate::physics::model::Model;
+use crate::physics::simulator::Simulator;
+use crate::train::body_episodes::BodyEpisodes;
+use crate::train::body_policy::BodyPolicy;
+use anyhow::Result;
+use glam::Vec3;
+
+/// What all playthroughs of a task share.
+pub struct BodyContext {
+    episodes: BodyEpisodes,
+    /// An environment of the episode `opened`; every moment puts its own state into it.
+    env: CpuHumanoidEnv,
+    opened: u32,
+    /// What the body is to move like, if there are recordings.
+    pub reference: Option<Reference>,
+}
+
+impl BodyContext {
+    /// The context of a task's episodes.
+    pub fn new(episodes: BodyEpisodes) -> BodyContext {
+        BodyContext {
+            env: episodes.open(0),
+            opened: 0,
+            reference: episodes.recordings.as_ref().map(Reference::new),
+            episodes,
+        }
+    }
+
+    /// What is simulated.
+    pub fn model(&self) -> &Model {
+        self.env.task().model()
+    }
+
+    /// An environment of an episode, in whatever state.
+    fn env(&mut self, episode: u32) -> &mut CpuHumanoidEnv {
+        if self.opened != episode {
+            self.env = self.episodes.open(episode);
+            self.opened = episode;
+        }
+        &mut self.env
+    }
+}
+
+/// A force on a body that lasts a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// Number of the body.
+    pub body: usize,
+    /// At its centre of mass, N.
+    pub force: Vec3,
+}
+
+/// The force between two shapes that touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TouchForce {
+    /// Its centre, m.
+    pub at: Vec3,
+    /// Of the ground on a body, or of a body on another, N.
+    pub force: Vec3,
+}
+
+/// A body at one moment, and all that decides the next ones. Coordinates are the simulation's.
+#[derive(Clone)]
+pub struct BodyPlaythrough {
+    /// Number of the evaluation episode, the same for every policy.
+    pub episode: u32,
+    /// Steps of it so far.
+    pub steps: usize,
+    /// Positions, `[nq]`.
+    pub q: Vec<f32>,
+    /// Reward of the last step.
+    pub reward: f32,
+    /// Style reward of the last step, where there is a discriminator.
+    pub style: Option<f32>,
+    /// Forces at the end of the last step.
+    pub touching: Vec<TouchForce>,
+    /// Somebody's push in the last step.
+    pub push: Option<Push>,
+    /// The frame of [`BodyContext::reference`] beside it.
+    pub reference: Option<usize>,
+    observation: Vec<f32>,
+    state: Section,
+}
+
+impl BodyPlaythrough {
+    /// The start of an evaluation episode, which lasts until it ends otherwise than by its length.
+    ///
+    /// # Errors
+    /// None: the environment is on the host.
+    pub fn new(context: &mut BodyContext, episode: u32) -> Result<BodyPlaythrough> {
+        context.env = context.episodes.open(episode);
+        context.opened = episode;
+        context.env.episodes[0][LIMIT] = f32::MAX;
+        let mut first = BodyPlaythrough {
+            episode,
+            steps: 0,
+            q: Vec::new(),
+            reward: 0.0,
+            style: None,
+            touching: Vec::new(),
+            push: None,
+            reference: None,
+            observation: vec![0.0; context.env.spec().observation.dim()],
+            state: Section::default(),
+        };
+        first.take(&mut context.env)?;
+        first.follow(context);
+        Ok(first)
+    }
+
+    /// The moment a step, a thirtieth of a second, later. After an episode's end that is the start of the
+    /// next.
+    ///
+    /// # Errors
+    /// None: the environment is on the host.
+    pub fn next(
+        &self,
+        context: &mut BodyContext,
+        policy: &BodyPolicy,
+        push: Option<Push>,
+    ) -> Result<BodyPlaythrough> {
+        let env = context.env(self.episode);
+        env.load(&mut self.state.clone())?;
+        if let Some(push) = push {
+            env.batch.worlds[0].external_forces[push.body].linear += push.force;
+        }
+        let mut step = PolicyStep::new(env);
+        step.play(env, &|observation| policy.policy.mean(observation));
+        if step.ends.host()[0] != termination::RUNNING {
+            return BodyPlaythrough::new(context, self.episode + 1);
+        }
+        let mut next = BodyPlaythrough {
+            steps: self.steps + 1,
+            reward: step.reward.host()[0],
+            touching: touching(env),
+            push,
+            ..self.clone()
+        };
+        next.take(env)?;
+        let style = env.spec().style;
+        let moments = [&self.observation[..style], &next.observation[..style]];
+        let discriminator = policy.discriminator.as_ref();
+        next.style = discriminator.map(|discriminator| discriminator.reward(moments));
+        next.follow(context);
+        Ok(next)
+    }
+
+    /// Puts the target elsewhere on the ground, m, if the task has one.
+    ///
+    /// # Errors
+    /// None: the environment is on the host.
+    pub fn move_target(&mut self, context: &mut BodyContext, at: [f32; 2]) -> Result<()> {
+        let env = context.env(self.episode);
+        env.load(&mut self.state)?;
+        env.move_target(0, at);
+        self.take(env)
+    }
+
+    /// Takes over an environment's state.
+    fn take(&mut self, env: &mut CpuHumanoidEnv) -> Result<()> {
+        self.q.clone_from(&env.batch.worlds[0].state.q);
+        let mut observation = Array::Host(std::mem::take(&mut self.observation));
+        env.observe(&mut observation, 0);
+        self.observation = observation.host().to_vec();
+        self.state = Section::default();
+        env.save(&mut self.state)
+    }
+
+    fn follow(&mut self, context: &BodyContext) {
+        let reference = context.reference.as_ref();
+        self.reference =
+            reference.map(|reference| reference.follow(self.reference, &self.observation));
+    }
+}
+
+/// The forces of the last step of the physics, one for every two shapes that touch.
+fn touching(env: &mut CpuHumanoidEnv) -> Vec<TouchForce> {
+    let mut found = [Vec::new()];
+    env.batch.each(&mut found, |_, simulator, _, found| {
+        *found = touch_forces(simulator);
+    });
+    let [found] = found;
+    found
+}
+
+fn touch_forces(simulator: &Simulator) -> Vec<TouchForce> {
+    let contacts = &simulator.contacts;
+    let points: Vec<(u32, Vec3, Vec3)> = (contacts.ids.iter().zip(&contacts.points))
+        .zip(simulator.contact_forces())
+        .map(|((id, point), force)| (id / MAX_POINTS as u32, point.position, force))
+        .collect();
+    let of_pair = |points: &[(u32, Vec3, Vec3)]| {
+        let weight = |force: Vec3| force.length() + f32::MIN_POSITIVE;
+        let total: f32 = points.iter().map(|(_, _, force)| weight(*force)).sum();
+        let centre: Vec3 = points
+            .iter()
+            .map(|(_, at, force)| *at * weight(*force))
+            .sum();
+        TouchForce {
+            at: centre / total,
+            force: points.iter().map(|(_, _, force)| *force).sum(),
+        }
+    };
+    let pairs = points.chunk_by(|a, b| a.0 == b.0);
+    pairs.map(of_pair).collect()
+}

@@ -1,0 +1,253 @@
+//! The contents of the window of a simulated body.
+
+use super::policies::{Policies, PolicyEntry};
+use super::screen::{PointerAction, Screen};
+use super::timeline::Timeline;
+use super::transport::{self, Seek, Transport};
+use crate::env::humanoid::task::DT;
+use crate::gpu::Gpu;
+use crate::train::body_policy::BodyPolicy;
+use crate::view::Camera;
+use crate::view::body_playthrough::{BodyContext, BodyPlaythrough, Push};
+use crate::view::body_scene::{ARROW, BodyExtras, body_scene};
+use crate::view::camera::{FOLLOW, Ray};
+use crate::view::shapes::{self, seen, simulated};
+use anyhow::{Context, Result};
+use eframe::egui::{self, Ui};
+use eframe::egui_wgpu::RenderState;
+use glam::Vec3;
+
+/// Farthest from a body's centre that the pointer takes hold of it, m.
+const GRIP: f32 = 0.2;
+/// The hardest push, N.
+const HARDEST: f32 = 500.0;
+
+/// The window of `play` of a simulated body.
+pub struct BodyViewer {
+    context: BodyContext,
+    policies: Policies<BodyPolicy>,
+    policy: BodyPolicy,
+    timeline: Timeline<BodyPlaythrough>,
+    transport: Transport,
+    camera: Camera,
+    extras: BodyExtras,
+    /// The body that the pointer has hold of, and where the pointer is.
+    grip: Option<(usize, Ray)>,
+    /// What went wrong last.
+    problem: Option<String>,
+    screen: Screen,
+}
+
+impl BodyViewer {
+    /// Shows the last of a run's policies.
+    ///
+    /// # Errors
+    /// There is none, or it cannot be loaded.
+    pub fn new(
+        gpu: &Gpu,
+        window: &RenderState,
+        mut context: BodyContext,
+        policies: Vec<PolicyEntry<BodyPolicy>>,
+    ) -> Result<Self> {
+        let policies = Policies::new(policies);
+        let policy = policies.load().context("the run has no checkpoints")??;
+        let mut viewer = BodyViewer {
+            timeline: Timeline::new(BodyPlaythrough::new(&mut context, 0)?),
+            policy,
+            policies,
+            context,
+            transport: Transport::default(),
+            camera: Camera::default(),
+            extras: BodyExtras {
+                forces: true,
+                reference: true,
+            },
+            grip: None,
+            problem: None,
+            screen: Screen::new(gpu, window),
+        };
+        viewer.look_at_it(1.0);
+        Ok(viewer)
+    }
+
+    /// Draws the window and takes its input.
+    pub fn show(&mut self, ui: &mut Ui) {
+        if !transport::keys_are_taken(ui)
+            && let Some(seek) = self.transport.keys(ui)
+        {
+            self.seek(seek);
+        }
+        for _ in 0..self.transport.due(ui) {
+            self.forward();
+        }
+        let (frame, frames) = (self.timeline.at(), self.timeline.len());
+        let bar = egui::Panel::bottom("transport");
+        let seek = bar.show(ui, |ui| self.transport.show(ui, frame, frames));
+        if let Some(seek) = seek.inner {
+            self.seek(seek);
+        }
+        egui::Panel::right("state")
+            .default_size(260.0)
+            .show(ui, |ui| self.state(ui));
+        egui::CentralPanel::default()
+            .frame(egui::Frame::NONE)
+            .show(ui, |ui| self.world(ui));
+        if self.transport.playing {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// What has been played.
+    pub fn timeline(&self) -> &Timeline<BodyPlaythrough> {
+        &self.timeline
+    }
+
+    /// A step on.
+    fn forward(&mut self) {
+        let push = self.push();
+        let next = |now: &BodyPlaythrough| now.next(&mut self.context, &self.policy, push);
+        let advanced = self.timeline.forward(next);
+        if self.succeeded(advanced).is_none() {
+            self.transport.playing = false;
+        }
+        self.look_at_it(FOLLOW);
+    }
+
+    /// Stops at another frame.
+    fn seek(&mut self, seek: Seek) {
+        self.transport.playing = false;
+        match seek {
+            Seek::Next => return self.forward(),
+            Seek::Previous => self.timeline.go_to(self.timeline.at().saturating_sub(1)),
+            Seek::To(frame) => self.timeline.go_to(frame),
+        }
+        self.look_at_it(1.0);
+    }
+
+    /// What came of something; a failure is shown.
+    fn succeeded<T>(&mut self, result: Result<T>) -> Option<T> {
+        if let Err(error) = &result {
+            self.problem = Some(format!("{error:#}"));
+        }
+        result.ok()
+    }
+
+    fn look_at_it(&mut self, fraction: f32) {
+        if self.transport.follow {
+            let at = seen(Vec3::from_slice(&self.timeline.now().q));
+            self.camera.follow([at.x, at.z], fraction);
+        }
+    }
+
+    fn state(&mut self, ui: &mut Ui) {
+        if let Some(problem) = &self.problem {
+            ui.colored_label(ui.visuals().error_fg_color, problem);
+        }
+        if let Some(loaded) = self.policies.show(ui)
+            && let Some(policy) = self.succeeded(loaded)
+        {
+            self.policy = policy;
+            self.problem = None;
+            self.timeline.change();
+        }
+        if ui.button("Next episode").clicked() {
+            let next = self.timeline.now().episode + 1;
+            let begun = BodyPlaythrough::new(&mut self.context, next);
+            if let Some(first) = self.succeeded(begun) {
+                self.timeline = Timeline::new(first);
+                self.look_at_it(1.0);
+            }
+        }
+        ui.small("Drag the body to push it; drag elsewhere to turn the camera.");
+        if self.context.model().trees.len() > 1 {
+            ui.small("Click the ground to put the target there.");
+        }
+        ui.separator();
+        ui.checkbox(&mut self.extras.forces, "Contact forces");
+        if self.context.reference.is_some() {
+            ui.checkbox(&mut self.extras.reference, "Nearest recording");
+        }
+        ui.separator();
+        self.moment(ui);
+    }
+
+    fn moment(&self, ui: &mut Ui) {
+        let now = self.timeline.now();
+        ui.strong(format!("Episode {}", now.episode));
+        ui.label(format!("{:.2} s", now.steps as f32 * DT));
+        ui.label(format!("reward {:.2}", now.reward));
+        if let (Some(discriminator), Some(style)) = (&self.policy.discriminator, now.style) {
+            let bar = egui::ProgressBar::new(discriminator.share(style).clamp(0.0, 1.0));
+            ui.add(bar.text(format!("style reward {style:.2}")))
+                .on_hover_text("Full: taken for a recording. Half: not told from one.");
+        }
+        if let Some(push) = now.push {
+            let body = &self.context.model().bodies[push.body].name;
+            ui.label(format!("pushed by {:.0} N: {body}", push.force.length()));
+        }
+        if let (Some(reference), Some(frame)) = (&self.context.reference, now.reference) {
+            let (name, time) = reference.name(frame);
+            ui.label(format!("nearest to {name} at {time:.2} s"));
+        }
+    }
+
+    fn world(&mut self, ui: &mut Ui) {
+        let (now, context) = (self.timeline.now(), &self.context);
+        let scene = body_scene(now, context, self.push(), self.extras, &self.camera);
+        let grabbed = self.grip.is_some();
+        let touch = self
+            .screen
+            .show(ui, &scene, None, &mut self.camera, grabbed);
+        match touch {
+            Some(PointerAction::Click(ray)) => self.move_target(&ray),
+            Some(PointerAction::Press(ray)) => {
+                self.grip = self.body_at(&ray).map(|body| (body, ray));
+            }
+            Some(PointerAction::Drag(ray)) => {
+                if let Some((_, at)) = &mut self.grip {
+                    *at = ray;
+                    self.timeline.change();
+                }
+            }
+            Some(PointerAction::Release) => self.grip = None,
+            None => {}
+        }
+    }
+
+    fn move_target(&mut self, ray: &Ray) {
+        let Some([x, z]) = ray.ground() else {
+            return;
+        };
+        let at = simulated(Vec3::new(x, 0.0, z));
+        let moment = self.timeline.change();
+        let moved = moment.move_target(&mut self.context, [at.x, at.y]);
+        self.succeeded(moved);
+    }
+
+    /// The body that is nearest to where the pointer is.
+    fn body_at(&self, ray: &Ray) -> Option<usize> {
+        let distances = self.centres().into_iter().map(|at| ray.distance(at));
+        let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.filter(|(_, far)| *far < GRIP).map(|(body, _)| body)
+    }
+
+    /// Centres of mass in the scene.
+    fn centres(&self) -> Vec<Vec3> {
+        let model = self.context.model();
+        let poses = shapes::poses(model, &self.timeline.now().q);
+        let bodies = model.bodies.iter().zip(&poses);
+        bodies.map(|(body, pose)| seen(pose.at(body.com))).collect()
+    }
+
+    /// The push of the body that is held, towards the pointer: its arrow ends there.
+    fn push(&self) -> Option<Push> {
+        let (body, ray) = self.grip?;
+        let centre = self.centres()[body];
+        let towards = ray.plane(centre, self.camera.focus - self.camera.eye())?;
+        let force = simulated(towards - centre) / ARROW;
+        Some(Push {
+            body,
+            force: force.clamp_length_max(HARDEST),
+        })
+    }
+}
