@@ -14,11 +14,16 @@ fn bodies_learn_a_style_and_are_evaluated() {
         ("imitate", ["survival", "speed_ratio", "dtw_m", "coverage"]),
         (
             "punch",
-            ["survival", "hit_rate", "fist_rate", "time_to_hit_mean_s"],
+            ["survival", "hit_rate", "fist_rate", "boxing_share"],
         ),
         (
             "joystick",
-            ["survival", "hit_rate", "facing_error_deg", "episodes"],
+            [
+                "heading_error_deg",
+                "speed_error",
+                "facing_error_deg",
+                "dtw_m",
+            ],
         ),
     ] {
         let told = place.done(&format!("train {task} {SMALL} --steps 256 --out {task}"));

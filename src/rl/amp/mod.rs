@@ -6,6 +6,7 @@
 pub mod discriminator;
 pub mod learner;
 mod loss;
+mod pace;
 mod replay;
 
 pub use discriminator::Discriminator;

@@ -28,6 +28,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     about: "Keep a simulated body upright while it is pushed",
     preset,
     spec: check,
+    takes_motions: false,
     load,
     ablations: &[],
 };
@@ -131,6 +132,7 @@ impl Task for StandTraining {
         Ok(Evaluation {
             episodes: found.episodes,
             success: found.survival,
+            success_name: "survival",
             measures: measures.into_iter().collect(),
         })
     }
