@@ -148,9 +148,9 @@ fn starts_agree() {
         for (form, state) in forms.shaders() {
             close(form, state, &forms.twin, |_| 0.0);
         }
-        for env in 0..envs {
+        for (env, &begins) in mask.iter().enumerate() {
             let row = 2.0 * start_of(9, 4 + env as u32, 2, 20) as f32;
-            let want = if mask[env] == 0 {
+            let want = if begins == 0 {
                 [7.0; 2]
             } else {
                 [row, row + 1.0]
