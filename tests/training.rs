@@ -42,11 +42,16 @@ impl Place {
         self.0.path().join(name)
     }
 
-    /// Trains in the folder `run`, from its last checkpoint if there is one.
+    /// Trains on the folder's motion in its folder `run`, from its last checkpoint if there is one.
     fn train(&self, config: &Config, device: Choice, run: &str) -> anyhow::Result<Summary> {
-        let device = Device::open(device).expect("an adapter");
         let mut config = config.clone();
         config.data = Some(self.path("motion"));
+        self.train_on(config, device, run)
+    }
+
+    /// Trains on the configuration's own motion.
+    fn train_on(&self, config: Config, device: Choice, run: &str) -> anyhow::Result<Summary> {
+        let device = Device::open(device).expect("an adapter");
         let (entry, out) = (find(&config.task.name)?, self.path(run));
         let begun = out.exists();
         let training = Training {
@@ -106,6 +111,19 @@ fn learns_to_reach_targets_on_lavapipe() {
     let summary = place.train(&config, Choice::Lavapipe, "run");
     let summary = summary.expect("a training");
     assert!(summary.evaluation.success >= 0.8, "{summary:?}");
+}
+
+/// The performer's walk, by style alone.
+#[test]
+fn learns_to_walk_on_the_cpu() {
+    let place = Place(tempfile::tempdir().expect("a folder"));
+    let config = Config {
+        steps: 1_000_000,
+        ..preset("imitate", Preset::Fast)
+    };
+    let summary = place.train_on(config, Choice::Cpu, "run");
+    let summary = summary.expect("a training");
+    assert!(summary.evaluation.success >= 0.5, "{summary:?}");
 }
 
 /// Trains without a stop, again, and with a stop.

@@ -5,6 +5,7 @@
 // starts        [width][envs]: those drawn; the others stay
 
 #import rng
+#import start_draw
 
 struct Params {
     envs: u32,
@@ -20,14 +21,12 @@ struct Params {
 @group(0) @binding(2) var<storage, read_write> starts: array<f32>;
 @group(0) @binding(3) var<uniform> params: Params;
 
-const STREAM = 0x53544152u;
-
 @compute @workgroup_size(64)
 fn draw_starts(@builtin(global_invocation_id) id: vec3u) {
     let env = id.x;
     if (env >= params.envs) { return; }
     if (mask[env] == 0u) { return; }
-    let bits = random4(params.seed, params.first + env, params.reset_counter, STREAM);
-    let start = index_below(bits.x, params.count) * params.width;
+    let drawn = start_of(params.seed, params.first + env, params.reset_counter, params.count);
+    let start = drawn * params.width;
     for (var k = 0u; k < params.width; k++) { starts[k * params.envs + env] = start_states[start + k]; }
 }

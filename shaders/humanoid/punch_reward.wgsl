@@ -11,7 +11,8 @@
 // task_end    [envs]
 // kind        [envs], from `at` on: 0 the target is far, 1 near, 2 it has been hit
 //
-// Equations are those of the paper, with `far` 0 as printed, 1 with a slower distance, 2 as a sum.
+// Equations are those of the paper, with `far` 0 as printed, 1 with a slower distance, 2 as a sum, 3 as a
+// sum for a velocity.
 
 #import termination
 #import spatial
@@ -32,6 +33,7 @@ struct Params {
     steps_after: u32,     // that the episode goes on after a hit
     speed: f32,           // wanted, m/s
     near: f32,            // m; nearer than this is near
+    hand_speed: f32,      // m/s toward the target, at which a hand's reward is largest
     fist_speed: f32,      // m/s; a slower fist is none
 }
 
@@ -45,6 +47,7 @@ struct Params {
 @group(0) @binding(7) var<storage, read_write> kind: array<u32>;
 @group(0) @binding(8) var<uniform> params: Params;
 
+const PI = 3.14159265;
 const TOPPLED = 0.2; // of the target's up axis along the world's
 
 var<private> env: u32;
@@ -72,16 +75,23 @@ fn unit(v: vec2f) -> vec2f { return select(vec2f(1.0, 0.0), v / length(v), lengt
 // Equations 2 to 4 for one hand.
 fn near_reward(hand: u32, toward: vec2f, target_position: vec3f) -> f32 {
     let apart = target_position - position_of(hand);
-    let speed = dot(toward, velocity_of(hand).xy);
+    let speed = dot(toward, velocity_of(hand).xy) / params.hand_speed;
     return 0.2 * exp(-4.0 * dot(apart, apart)) + 0.8 * clamp(speed, 0.0, 1.0);
 }
 
-// Equations 5 to 10, or a sum with a slope everywhere.
+// Equations 5 to 10, or a sum with a slope everywhere: of the speed toward the target, or of the difference
+// from the wanted velocity.
 fn far_reward(distance: f32, way: vec2f, velocity: vec2f, alignment: f32) -> f32 {
     let along = dot(way, velocity);
     if (params.far == 2u) {
         let facing = select(0.2, 0.1 * (1.0 + alignment), params.facing == 1u);
         return 0.6 * clamp(along / 1.5, -0.3, 1.0) + facing + 0.2 / (1.0 + distance);
+    }
+    if (params.far == 3u) {
+        let off = length(velocity - params.speed * way) / params.speed;
+        let turned = acos(clamp(alignment, -1.0, 1.0)) / PI;
+        let facing = select(0.4, 0.4 * (1.0 - turned), params.facing == 1u);
+        return 0.5 * max(1.0 - off, -0.3) + facing + 0.1 / (1.0 + distance);
     }
     let across = velocity - along * way;
     let short = params.speed - along;

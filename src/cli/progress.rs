@@ -46,12 +46,13 @@ impl Observer for Progress {
             .map_or(by_steps, |max| by_steps.min(max - row.wall_s))
             .max(0.0);
         let line = format!(
-            "{:>9} steps{}  success {:>5.1} %  return {:>7.1}  {:>7.0} steps/s  {} gone, at most {} left",
+            "{:>9} steps{}  success {:>5.1} %  return {:>7.1}{}  {:>7.0} steps/s  {} gone, at most {} left",
             row.steps,
             row.level
                 .map_or(String::new(), |level| format!("  level {level}")),
             100.0 * recent.success,
             recent.episode_return,
+            style(row),
             row.steps_per_s,
             clock(row.wall_s),
             clock(left),
@@ -68,6 +69,18 @@ impl Observer for Progress {
             None => {}
         }
     }
+}
+
+/// The style reward of a step, and how many of the agents' windows and of the recorded ones the discriminator
+/// recognised; nothing where there is none.
+fn style(row: &UpdateMetrics) -> String {
+    let Some(reward) = row.rate("style_reward") else {
+        return String::new();
+    };
+    let [agents, recorded] =
+        ["agent_accuracy", "recorded_accuracy"].map(|name| 100.0 * row.rate(name).unwrap_or(0.0));
+    let fall = 100.0 * row.rate("fall").unwrap_or(0.0);
+    format!("  style {reward:.2}  recognised {agents:.0} / {recorded:.0} %  fall {fall:>3.0} %")
 }
 
 impl Drop for Progress {

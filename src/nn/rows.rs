@@ -58,6 +58,20 @@ pub fn replace(device: &Device, to: &mut Array, at: usize, values: &Array) {
     }
 }
 
+/// Adds the sum of all `values` to the first number of `to`.
+pub fn add_sum(device: &Device, values: &Array, to: &mut Array) {
+    match device {
+        Device::Cpu => {
+            let sum: f64 = values.host().iter().map(|&value| f64::from(value)).sum();
+            to.host_mut()[0] += sum as f32;
+        }
+        #[cfg(feature = "gpu")]
+        Device::Gpu(gpu) => tensors::add_sum(gpu, values, to),
+        #[cfg(not(feature = "gpu"))]
+        Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
+    }
+}
+
 /// Adds `rate` times some of the `parameters` to the `gradient` of the same indices: the gradient of a decay
 /// of these weights.
 pub fn decay(

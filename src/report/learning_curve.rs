@@ -27,6 +27,14 @@ pub struct Point {
     pub episode_return: Option<f64>,
     /// Mean length of the finished episodes, in steps.
     pub episode_length: Option<f64>,
+    /// Share of the finished episodes that ended by a fall, 0 to 1.
+    pub fall: Option<f64>,
+    /// Mean style reward of a step.
+    pub style_reward: Option<f64>,
+    /// Share of the recorded windows that the discriminator took for such, 0 to 1.
+    pub recorded_accuracy: Option<f64>,
+    /// Share of the agents' windows that it took for such, 0 to 1.
+    pub agent_accuracy: Option<f64>,
 }
 
 /// A dashed vertical line at a moment worth naming.
@@ -53,10 +61,11 @@ const LABEL_ROWS: usize = 5;
 
 const CURVE: RGBColor = RGBColor(0x1e, 0x3a, 0x5f);
 
-/// One quantity over the steps.
+/// One quantity over the steps, and another of the same axis beside it.
 pub(super) struct Panel {
     pub label: &'static str,
     pub value: fn(&Point) -> Option<f64>,
+    beside: Option<fn(&Point) -> Option<f64>>,
     /// The axis, where the quantity itself sets its limits.
     pub limits: Option<(f64, f64)>,
     /// How the last value is written beside the curve.
@@ -66,34 +75,73 @@ pub(super) struct Panel {
 impl Panel {
     /// The finite values with their steps.
     pub fn values(&self, points: &[Point]) -> Vec<(f64, f64)> {
-        points
-            .iter()
-            .filter_map(|point| Some((point.steps as f64, (self.value)(point)?)))
-            .filter(|(_, value)| value.is_finite())
-            .collect()
+        values(self.value, points)
     }
+}
+
+fn values(value: fn(&Point) -> Option<f64>, points: &[Point]) -> Vec<(f64, f64)> {
+    points
+        .iter()
+        .filter_map(|point| Some((point.steps as f64, value(point)?)))
+        .filter(|(_, value)| value.is_finite())
+        .collect()
 }
 
 pub(super) const PANELS: [Panel; 3] = [
     Panel {
         label: "success (%)",
         value: |point| point.success.map(|share| 100.0 * share),
+        beside: None,
         limits: Some((0.0, 104.0)),
-        format: |percent| format!("{percent:.1} %"),
+        format: percent,
     },
     Panel {
         label: "episode return",
         value: |point| point.episode_return,
+        beside: None,
         limits: None,
         format: brief,
     },
     Panel {
         label: "episode length (steps)",
         value: |point| point.episode_length,
+        beside: None,
         limits: None,
         format: brief,
     },
 ];
+
+/// What a training with a discriminator has besides.
+const STYLE_PANELS: [Panel; 3] = [
+    Panel {
+        label: "style reward a step",
+        value: |point| point.style_reward,
+        beside: None,
+        limits: None,
+        format: brief,
+    },
+    Panel {
+        label: "recognised: agents, recordings (%)",
+        value: |point| point.agent_accuracy.map(|share| 100.0 * share),
+        beside: Some(|point| point.recorded_accuracy.map(|share| 100.0 * share)),
+        limits: Some((0.0, 104.0)),
+        format: percent,
+    },
+    Panel {
+        label: "falls (%)",
+        value: |point| point.fall.map(|share| 100.0 * share),
+        beside: None,
+        limits: Some((0.0, 104.0)),
+        format: percent,
+    },
+];
+
+/// The panels of a training: those of every one, and those of its style, if it has one.
+fn panels(points: &[Point]) -> Vec<&'static Panel> {
+    let styled = points.iter().any(|point| point.style_reward.is_some());
+    let style = STYLE_PANELS.iter().filter(|_| styled);
+    PANELS.iter().chain(style).collect()
+}
 
 /// Draws the curves, with `marks` and the beginnings of `levels` through all panels, as a
 /// PNG. A task without a curriculum has no `levels`.
@@ -113,16 +161,17 @@ pub fn draw(
     let rows = labels.iter().map(|label| label.row + 1).max();
     let rows = rows.unwrap_or(usize::from(!numbers.is_empty()));
     let top = TOP + rows as f64 * LABEL_ROW;
-    let panels = PANELS.len() as f64;
-    let height = top + panels * PANEL + (panels - 1.0) * GAP + BOTTOM;
+    let panels = panels(points);
+    let count = panels.len() as f64;
+    let height = top + count * PANEL + (count - 1.0) * GAP + BOTTOM;
     paint(path, WIDTH as u32, height as u32, |canvas| {
-        for (index, panel) in PANELS.iter().enumerate() {
+        for (index, panel) in panels.iter().enumerate() {
             let plot = plot(panel, points, end, top + index as f64 * (PANEL + GAP));
             plot.draw_grid(canvas)?;
             plot.label_y(canvas)?;
             levels::draw_lines(canvas, &plot, levels)?;
             draw_panel(canvas, panel, &plot, points, marks)?;
-            if index + 1 == PANELS.len() {
+            if index + 1 == panels.len() {
                 plot.label_x(canvas)?;
                 draw_time(canvas, &plot, points)?;
             }
@@ -192,23 +241,40 @@ fn draw_panel(
     points: &[Point],
     marks: &[Mark],
 ) -> Result<(), ReportError> {
+    if let Some(beside) = panel.beside {
+        let raw = values(beside, points);
+        draw_line(canvas, panel, plot, &raw, &[], chart::colour(1))?;
+    }
     let raw = panel.values(points);
-    let smooth = smoothed(&raw, plot.x.max);
-    let place = |&(x, y): &(f64, f64)| plot.at(x, y.clamp(plot.y.min, plot.y.max));
+    if raw.is_empty() {
+        draw_marks(canvas, plot, marks)?;
+        return plot.remark(canvas, "no finished episodes yet");
+    }
+    draw_line(canvas, panel, plot, &raw, marks, CURVE)
+}
 
+fn draw_line(
+    canvas: &mut Canvas<'_>,
+    panel: &Panel,
+    plot: &Plot,
+    raw: &[(f64, f64)],
+    marks: &[Mark],
+    colour: RGBColor,
+) -> Result<(), ReportError> {
+    let smooth = smoothed(raw, plot.x.max);
+    let place = |&(x, y): &(f64, f64)| plot.at(x, y.clamp(plot.y.min, plot.y.max));
     let line: Vec<Pixel> = raw.iter().map(place).collect();
-    canvas.line(&line, chart::tint(CURVE, 0.25), 1.3)?;
+    canvas.line(&line, chart::tint(colour, 0.25), 1.3)?;
     draw_marks(canvas, plot, marks)?;
     let line: Vec<Pixel> = smooth.iter().map(place).collect();
-    canvas.line(&line, CURVE, 3.2)?;
-
+    canvas.line(&line, colour, 3.2)?;
     let Some(last) = smooth.last() else {
-        return plot.remark(canvas, "no finished episodes yet");
+        return Ok(());
     };
     let (x, y) = place(last);
-    canvas.disc((x, y), 5.0, CURVE, 1.0)?;
+    canvas.disc((x, y), 5.0, colour, 1.0)?;
     let text = (panel.format)(last.1);
-    canvas.text(&text, (x + 14.0, y), Anchor::Left, chart::SMALL, CURVE)
+    canvas.text(&text, (x + 14.0, y), Anchor::Left, chart::SMALL, colour)
 }
 
 /// Averages weighted by a bell curve, whose standard deviation is a small part of the
@@ -349,6 +415,10 @@ fn duration(seconds: f64) -> String {
         (_, 0, _) => format!("{hours} h"),
         (_, _, _) => format!("{hours}:{minutes:02} h"),
     }
+}
+
+fn percent(value: f64) -> String {
+    format!("{value:.1} %")
 }
 
 /// Three or four digits, as many as are worth reading.

@@ -18,11 +18,11 @@ pub struct BodyEpisodes {
 impl BodyEpisodes {
     /// `task` makes the task whose episodes a seed decides.
     pub fn new<T: HumanoidTask + 'static>(
-        task: impl Fn(u32) -> T + Send + Sync + 'static,
+        task: impl Fn(u32) -> Arc<T> + Send + Sync + 'static,
         recordings: Option<&Arc<MotionLibrary>>,
     ) -> BodyEpisodes {
         BodyEpisodes {
-            task: Arc::new(move |seed| -> Arc<dyn HumanoidTask> { Arc::new(task(seed)) }),
+            task: Arc::new(move |seed| -> Arc<dyn HumanoidTask> { task(seed) }),
             recordings: recordings.cloned(),
         }
     }

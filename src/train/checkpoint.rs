@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 const FORMAT: Format = Format {
     kind: "checkpt",
-    version: 5,
+    version: 6,
 };
 
 /// The run that a checkpoint is of, and how far it had come.

@@ -70,6 +70,7 @@ impl LocomotionReport {
             episodes: self.episodes,
             success: self.success,
             measures: always.into_iter().chain(delay).collect(),
+            ..Evaluation::default()
         }
     }
 }

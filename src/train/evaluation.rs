@@ -1,18 +1,40 @@
 //! What may be asked of an evaluation, and what it found, whatever the task.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 
 /// What the fixed episodes of an evaluation found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Evaluation {
     /// Episodes to play, or played.
     pub episodes: usize,
     /// Fraction of the episodes that succeeded.
     pub success: f64,
+    /// What a success is called in files.
+    pub success_name: &'static str,
     /// Whatever else the task measures, by name.
-    #[serde(flatten)]
     pub measures: BTreeMap<&'static str, f64>,
+}
+
+impl Default for Evaluation {
+    fn default() -> Self {
+        Evaluation {
+            episodes: 0,
+            success: 0.0,
+            success_name: "success",
+            measures: BTreeMap::new(),
+        }
+    }
+}
+
+impl Serialize for Evaluation {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let episodes = [("episodes", serde_json::json!(self.episodes))];
+        let success = [(self.success_name, self.success.into())];
+        let measures = self.measures.iter();
+        let measures = measures.map(|(name, value)| (*name, (*value).into()));
+        to.collect_map(episodes.into_iter().chain(success).chain(measures))
+    }
 }
 
 impl Evaluation {

@@ -31,6 +31,8 @@ pub struct TaskEntry {
     pub preset: fn(Preset) -> TaskPreset,
     /// Refuses choices of the task that cannot work. Returns the dimensions of the environments.
     pub spec: fn(&Config) -> Result<EnvSpec, ConfigError>,
+    /// Whether its data is a motion list.
+    pub takes_motions: bool,
     /// Loads the data.
     pub load: fn(&Config) -> Result<Loaded>,
     /// Comparisons of variants that `footwork ablate` knows.
@@ -60,17 +62,14 @@ impl TaskEntry {
         config.check()?;
         let spec = (self.spec)(config)?;
         ActorCritic::new(&config.ppo.network, &spec.observation, spec.action, 1)?;
-        match &config.amp {
-            Some(amp) => {
-                network(amp, 2 * spec.style).map_err(ConfigError::Discriminator)?;
-            }
-            None if config.ground || config.data_folder.is_some() => {
-                return Err(ConfigError::Settings(format!(
-                    "the task `{}` takes no motion list: leave out `ground` and `data_folder`",
-                    self.name
-                )));
-            }
-            None => {}
+        if let Some(amp) = &config.amp {
+            network(amp, 2 * spec.style).map_err(ConfigError::Discriminator)?;
+        }
+        if !self.takes_motions && (config.ground || config.data_folder.is_some()) {
+            return Err(ConfigError::Settings(format!(
+                "the task `{}` takes no motion list: leave out `ground` and `data_folder`",
+                self.name
+            )));
         }
         Ok(spec)
     }

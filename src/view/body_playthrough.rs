@@ -87,8 +87,10 @@ pub struct BodyPlaythrough {
     pub touching: Vec<TouchForce>,
     /// Somebody's push in the last step.
     pub push: Option<Push>,
-    /// The frame of [`BodyContext::reference`] beside it.
+    /// The frame of [`BodyContext::reference`] that it is nearest to.
     pub reference: Option<usize>,
+    /// Positions at which it should be, if the task says so.
+    pub wanted: Option<Vec<f32>>,
     observation: Vec<f32>,
     state: Section,
 }
@@ -111,6 +113,7 @@ impl BodyPlaythrough {
             touching: Vec::new(),
             push: None,
             reference: None,
+            wanted: None,
             observation: vec![0.0; context.env.spec().observation.dim()],
             state: Section::default(),
         };
@@ -173,6 +176,8 @@ impl BodyPlaythrough {
         let mut observation = Array::Host(std::mem::take(&mut self.observation));
         env.observe(&mut observation, 0);
         self.observation = observation.host().to_vec();
+        let wanted = env.task().wanted(&env.task_states[0]);
+        self.wanted = wanted.map(<[f32]>::to_vec);
         self.state = Section::default();
         env.save(&mut self.state)
     }

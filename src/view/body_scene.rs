@@ -55,12 +55,15 @@ fn arrow(scene: &mut Scene, from: Vec3, force: Vec3, colour: Colour) {
     scene.arrow(from, from + ARROW * seen(force), RADIUS, colour);
 }
 
-/// The recorded body, beside the other whichever way that goes.
+/// The body that it is to be like, beside it whichever way that goes.
 fn reference(scene: &mut Scene, moment: &BodyPlaythrough, context: &BodyContext, camera: &Camera) {
-    let (Some(reference), Some(frame)) = (&context.reference, moment.reference) else {
+    let Some(reference) = &context.reference else {
         return;
     };
-    let mut q = reference.q(frame);
+    let nearest = moment.reference.map(|frame| reference.q(frame));
+    let Some(mut q) = moment.wanted.clone().or(nearest) else {
+        return;
+    };
     let turn = Quat::from_rotation_z(heading(&moment.q) - heading(&q));
     let turned = turn * quaternion(&q[3..]);
     q[..2].copy_from_slice(&moment.q[..2]);

@@ -165,7 +165,7 @@ impl BodyViewer {
         ui.separator();
         ui.checkbox(&mut self.extras.forces, "Contact forces");
         if self.context.reference.is_some() {
-            ui.checkbox(&mut self.extras.reference, "Nearest recording");
+            ui.checkbox(&mut self.extras.reference, "Recording");
         }
         ui.separator();
         self.moment(ui);
@@ -187,7 +187,7 @@ impl BodyViewer {
         }
         if let (Some(reference), Some(frame)) = (&self.context.reference, now.reference) {
             let (name, time) = reference.name(frame);
-            ui.label(format!("nearest to {name} at {time:.2} s"));
+            ui.label(format!("most like {name} at {time:.2} s"));
         }
     }
 

@@ -18,7 +18,7 @@ fn a_simulated_body_is_trained_and_evaluated() {
     let found: Value = serde_json::from_str(&found).unwrap();
     for key in [
         "episodes",
-        "success",
+        "survival",
         "episode_length_mean_s",
         "uprightness",
     ] {

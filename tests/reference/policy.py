@@ -42,7 +42,7 @@ MIN_HEAD, MIN_PELVIS, MIN_BODY = 0.9, 0.5, 0.15
 FEET = "right_foot", "left_foot"
 KEYS = "right_hand", "left_hand", *FEET
 CLEARANCE = 1e-3
-VERSION = 5
+VERSION = 6
 
 
 def read(path):

@@ -57,7 +57,7 @@ fn an_ablation_survives_whatever_it_is_given() {
         success: Some(value),
         episode_return: Some(value),
         episode_length: None,
-        wall_s: 0.0,
+        ..Point::default()
     };
     let late = Point {
         steps: u64::MAX,

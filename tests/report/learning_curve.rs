@@ -30,6 +30,10 @@ fn a_learning_curve_survives_whatever_it_is_given() {
         success: Some(value),
         episode_return: Some(value),
         episode_length: Some(value),
+        fall: Some(value),
+        style_reward: Some(value),
+        recorded_accuracy: Some(value),
+        agent_accuracy: Some(value),
     };
     let equal: Vec<Point> = (0..50).map(|steps| Point { steps, ..odd(0.25) }).collect();
     let cases = [

@@ -82,6 +82,7 @@ fn training() -> Vec<Point> {
                 success: Some(part.sqrt()),
                 episode_return: Some(1000.0 * part + 20.0 * (40.0 * part).sin()),
                 episode_length: Some(200.0 - 180.0 * part),
+                ..Point::default()
             }
         })
         .collect()

@@ -200,11 +200,11 @@ fn what_a_body_is_to_move_like_is_shown_beside_it() {
     let mut harness = open("imitate");
     press(&mut harness, "Pause");
     harness.get_by_label_contains("style reward");
-    harness.get_by_label_contains("nearest to");
+    harness.get_by_label_contains("most like");
     let now = harness.state().timeline().now();
     assert!(now.style.is_some() && now.reference.is_some());
     let with = keep(&mut harness, "body-imitate");
-    press(&mut harness, "Nearest recording");
+    press(&mut harness, "Recording");
     let without = keep(&mut harness, "body-imitate-alone");
     assert!(with.difference(&without).0 > 0.005);
     press(&mut harness, "Contact forces");

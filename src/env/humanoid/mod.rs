@@ -1,14 +1,17 @@
 //! Simulated humanoids: [`batch`] steps their physics, [`task`] plays a task on it. [`stand`] is to stay
-//! upright, [`imitate`] to move as recordings do, [`punch`] to go up to a box and topple it.
+//! upright, [`imitate`] to move as recordings do, [`track`] to follow them moment
+//! by moment, [`punch`] to go up to a box and topple it.
 //!
 //! [`action`] says what an action means, [`starts`] where episodes begin, [`recorded`] what recordings are to
-//! a task.
+//! a task, and [`fidelity`] how motion compares with them.
 
 pub mod action;
 pub mod batch;
+pub mod fidelity;
 pub mod imitate;
 pub mod punch;
 pub mod recorded;
 pub mod stand;
 pub mod starts;
 pub mod task;
+pub mod track;

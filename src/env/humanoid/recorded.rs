@@ -35,17 +35,27 @@ pub fn observe(model: &Model, q: &[f32], v: &[f32]) -> Vec<f32> {
 /// Positions and velocities `[n][nq + nv]` at random times of a library's motions, by weight, lifted out of
 /// the ground.
 pub fn start_states(library: &MotionLibrary, seed: u32) -> Vec<f32> {
-    let model = library.model();
-    let feet = ["right_foot", "left_foot"].map(|name| model.body(name).expect("a foot"));
     let state = |start: u32| {
-        let [motion, time, ..] = random4(seed, start, 0, STREAM);
-        let (motion, time) = library.sample([uniform01(motion), uniform01(time)]);
-        let (mut q, v) = library.at(motion, time);
-        q[2] += (CLEARANCE - lowest_point(model, &feet, &q)).max(0.0);
-        [q, v].concat()
+        let (motion, time) = sample_moment(library, seed, start);
+        let (q, v) = library.at(motion, time);
+        [lifted(library.model(), &q), v].concat()
     };
     let states: Vec<Vec<f32>> = (0..START_STATES).into_par_iter().map(state).collect();
     states.concat()
+}
+
+/// The motion and the time, s, of the start state of this number.
+pub fn sample_moment(library: &MotionLibrary, seed: u32, start: u32) -> (usize, f32) {
+    let [motion, time, ..] = random4(seed, start, 0, STREAM);
+    library.sample([uniform01(motion), uniform01(time)])
+}
+
+/// Positions `q` with the feet lifted out of the ground.
+pub fn lifted(model: &Model, q: &[f32]) -> Vec<f32> {
+    let feet = ["right_foot", "left_foot"].map(|name| model.body(name).expect("a foot"));
+    let mut q = q.to_vec();
+    q[2] += (CLEARANCE - lowest_point(model, &feet, &q)).max(0.0);
+    q
 }
 
 /// Two moments a step apart from every frame of a library's motions on.

@@ -47,8 +47,14 @@ pub fn twin(mask: &[u32], start_states: &[f32], starts: &mut [f32], params: &Par
 
 /// The state, `[width]`, from which an environment begins.
 pub fn start<'a>(start_states: &'a [f32], env: usize, params: &Params) -> &'a [f32] {
-    let key = params.first + env as u32;
-    let [bits, ..] = random4(params.seed, key, params.reset_counter, STREAM);
     let width = params.width as usize;
-    &start_states[index_below(bits, params.count) as usize * width..][..width]
+    let key = params.first + env as u32;
+    let number = start_of(params.seed, key, params.reset_counter, params.count);
+    &start_states[number as usize * width..][..width]
+}
+
+/// Which of `count` start states the environment of this number begins in.
+pub fn start_of(seed: u32, key: u32, reset_counter: u32, count: u32) -> u32 {
+    let [bits, ..] = random4(seed, key, reset_counter, STREAM);
+    index_below(bits, count)
 }

@@ -1,9 +1,11 @@
 //! What tasks of the simulated humanoid add to a step of its physics: [`action_targets`] and
 //! [`random_pushes`] before it; behind it the task's reward, [`end_episode`], and [`draw_starts`] for the
 //! episodes that it ended. [`episode_sums`] collects statistics. The tasks `punch` and `joystick` have
-//! [`place_target`], [`punch_reward`] and [`punch_observe`] over a [`punch_state`].
+//! [`place_target`], [`punch_reward`] and [`punch_observe`] over a [`punch_state`];
+//! `track` has [`begin_track`], [`track_reward`] and [`track_observe`] over a [`track_state`].
 
 pub mod action_targets;
+pub mod begin_track;
 pub mod draw_starts;
 pub mod end_episode;
 pub mod episode_sums;
@@ -13,3 +15,6 @@ pub mod punch_reward;
 pub mod punch_state;
 pub mod random_pushes;
 pub mod stand_reward;
+pub mod track_observe;
+pub mod track_reward;
+pub mod track_state;

@@ -4,6 +4,7 @@
 use super::punch_state::{FACING, HIT_STEPS, MOVING, PUNCH_STATE};
 use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::kernels::physics::collision::poses_of;
+use crate::kernels::physics::proprioception::{heading_of, in_heading_frame, unit};
 use crate::kernels::physics::smooth_dynamics::spatial;
 use crate::kernels::physics::strided::gather;
 use crate::physics::pose::Pose;
@@ -94,15 +95,12 @@ pub fn observe(
 ) {
     let target = params.target_body as usize;
     let (root, block) = (poses[0], poses[target]);
-    let heading = unit((root.rotation * Vec3::X).truncate());
+    let heading = heading_of(root.rotation);
     let gap = (block.position - root.position).truncate();
     let distance = gap.length();
     let is_hit = f32::from(u8::from(state[HIT_STEPS] > 0.0));
     let turned2 = |v: Vec2| [heading.dot(v), heading.x * v.y - heading.y * v.x];
-    let turned3 = |v: Vec3| {
-        let [x, y] = turned2(v.truncate());
-        [x, y, v.z]
-    };
+    let turned3 = |v: Vec3| in_heading_frame(heading, v);
     let [x, y] = turned2(gap * (1.5 / distance.max(1e-6)).min(1.0));
     let velocity = velocities[target].linear - velocities[0].linear;
     let numbers = turned2(unit(gap))
@@ -118,11 +116,4 @@ pub fn observe(
     out.iter_mut()
         .zip(numbers.chain(wanted))
         .for_each(|(out, number)| *out = number);
-}
-
-fn unit(v: Vec2) -> Vec2 {
-    match v.length() > 1e-6 {
-        true => v / v.length(),
-        false => Vec2::X,
-    }
 }

@@ -4,12 +4,14 @@
 use super::punch_state::{FACING, FIRST, FIRST_SPEED, HAND_SPEED, HIT_STEPS, MOVING, PUNCH_STATE};
 use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::kernels::physics::collision::poses_of;
+use crate::kernels::physics::proprioception::{heading_of, unit};
 use crate::kernels::physics::smooth_dynamics::spatial;
 use crate::kernels::physics::strided::{gather, scatter};
 use crate::kernels::termination::{RUNNING, SUCCESS};
 use crate::physics::pose::Pose;
 use crate::physics::spatial::Spatial;
 use glam::{Vec2, Vec3};
+use std::f32::consts::PI;
 
 crate::shader_params! {
     pub struct Params for punch_reward {
@@ -29,7 +31,7 @@ crate::shader_params! {
         pub left_hand: u32,
         /// 1 if facing and moving are as the state says, 0 if to the target.
         pub joystick: u32,
-        /// Form of the far reward: 0 as printed, 1 with a slower distance, 2 as a sum.
+        /// Form of the far reward: 0 as printed, 1 with a slower distance, 2 as a sum, 3 as one for a velocity.
         pub far: u32,
         /// 1 if facing is rewarded.
         pub facing: u32,
@@ -41,6 +43,8 @@ crate::shader_params! {
         pub speed: f32,
         /// Distance below which the target is near, m.
         pub near: f32,
+        /// Speed of a hand toward the target at which its reward is largest, m/s.
+        pub hand_speed: f32,
         /// Speed below which a hand is no fist, m/s.
         pub fist_speed: f32,
     }
@@ -160,7 +164,7 @@ pub fn step(
         ),
         _ => (toward, toward),
     };
-    let alignment = unit((root.rotation * Vec3::X).truncate()).dot(wanted);
+    let alignment = heading_of(root.rotation).dot(wanted);
     note_contact(world, state, params);
     let hands = [params.right_hand, params.left_hand];
     let is_hand = |body: f32| hands.iter().any(|&hand| body == (hand + 1) as f32);
@@ -175,7 +179,7 @@ pub fn step(
     let reward = if hit {
         1.4
     } else if near {
-        let hands = hands.map(|hand| near_reward(world, hand, toward, target.position));
+        let hands = hands.map(|hand| near_reward(world, hand, toward, target.position, params));
         0.3 + 0.3 * hands[0].max(hands[1])
     } else {
         let velocity = world.velocities[0].linear.truncate();
@@ -209,22 +213,16 @@ fn note_contact(world: &Bodies, state: &mut [f32], params: &Params) {
     state[HAND_SPEED] = speeds[0].max(speeds[1]);
 }
 
-fn unit(v: Vec2) -> Vec2 {
-    match v.length() > 1e-6 {
-        true => v / v.length(),
-        false => Vec2::X,
-    }
-}
-
-/// Reward for a hand that approaches the target (the paper's equations 2 to 4).
-fn near_reward(world: &Bodies, hand: u32, toward: Vec2, target: Vec3) -> f32 {
+/// Reward for a hand that approaches the target (the paper's equations 2 to 4, whose `hand_speed` is 1 m/s).
+fn near_reward(world: &Bodies, hand: u32, toward: Vec2, target: Vec3, params: &Params) -> f32 {
     let apart = target - world.poses[hand as usize].position;
-    let speed = toward.dot(world.velocity(hand).truncate());
+    let speed = toward.dot(world.velocity(hand).truncate()) / params.hand_speed;
     0.2 * (-4.0 * apart.length_squared()).exp() + 0.8 * speed.clamp(0.0, 1.0)
 }
 
 /// Reward for going to the target (the paper's equations 5 to 10), as printed, with a distance whose slope
-/// reaches further, or as a sum that has a slope everywhere.
+/// reaches further, or as a sum that has a slope everywhere: of the speed toward the target, or of the
+/// difference from the wanted velocity.
 pub fn far_reward(
     distance: f32,
     way: Vec2,
@@ -237,6 +235,12 @@ pub fn far_reward(
     if params.far == 2 {
         let facing = if faces { 0.1 * (1.0 + alignment) } else { 0.2 };
         return 0.6 * (along / 1.5).clamp(-0.3, 1.0) + facing + 0.2 / (1.0 + distance);
+    }
+    if params.far == 3 {
+        let short = (velocity - params.speed * way).length() / params.speed;
+        let turned = alignment.clamp(-1.0, 1.0).acos() / PI;
+        let facing = if faces { 0.4 * (1.0 - turned) } else { 0.4 };
+        return 0.5 * (1.0 - short).max(-0.3) + facing + 0.1 / (1.0 + distance);
     }
     let across = velocity - along * way;
     let short = params.speed - along;

@@ -18,6 +18,9 @@ crate::shader_params! {
     }
 }
 
+/// No body that has not diverged observes more than this. What has diverged counts as not having moved.
+const MOST: f32 = 1024.0;
+
 /// Queues the shader on `gpu`.
 ///
 /// `observation` is `[steps][rows][observation]`, `next_observation` `[rows][observation]`,
@@ -75,7 +78,7 @@ pub fn twin(
         } else {
             moment(observation, sample + rows)
         };
-        let diverged = after.iter().any(|value| !value.is_finite());
+        let diverged = !after.iter().all(|value| value.abs() <= MOST);
         let (first, second) = window.split_at_mut(style);
         first.copy_from_slice(&before);
         second.copy_from_slice(if diverged { &before } else { &after });

@@ -121,11 +121,7 @@ pub fn observe(
 ) {
     let tree = &model.trees[character[0] as usize];
     let (root, velocity) = (&poses[tree.bodies.start], velocities[tree.bodies.start]);
-    let forward = (root.rotation * Vec3::X).truncate();
-    let heading = match forward.length() > 1e-6 {
-        true => forward / forward.length(),
-        false => Vec2::X,
-    };
+    let heading = heading_of(root.rotation);
     let mut rest = out;
     let mut put = |values: &[f32]| {
         let (now, then) = std::mem::take(&mut rest).split_at_mut(values.len());
@@ -158,8 +154,22 @@ pub fn observe(
     }
 }
 
+/// Which way a root faces on the ground, a unit vector; one that faces straight up or down has no heading, and
+/// gets the world's.
+pub fn heading_of(root: Quat) -> Vec2 {
+    unit((root * Vec3::X).truncate())
+}
+
+/// A vector as a unit vector, x if it is none.
+pub fn unit(v: Vec2) -> Vec2 {
+    match v.length() > 1e-6 {
+        true => v / v.length(),
+        false => Vec2::X,
+    }
+}
+
 /// A vector of the world in the heading frame.
-fn in_heading_frame(heading: Vec2, vector: Vec3) -> [f32; 3] {
+pub fn in_heading_frame(heading: Vec2, vector: Vec3) -> [f32; 3] {
     [
         heading.x * vector.x + heading.y * vector.y,
         heading.x * vector.y - heading.y * vector.x,
@@ -168,7 +178,7 @@ fn in_heading_frame(heading: Vec2, vector: Vec3) -> [f32; 3] {
 }
 
 /// Where a rotation takes the axes x and z.
-fn rotation(rotation: Quat, heading: Vec2) -> [f32; 6] {
+pub fn rotation(rotation: Quat, heading: Vec2) -> [f32; 6] {
     let [x, z] = [Vec3::X, Vec3::Z].map(|axis| in_heading_frame(heading, rotation * axis));
     [x[0], x[1], x[2], z[0], z[1], z[2]]
 }

@@ -74,6 +74,12 @@ pub fn replace(gpu: &Gpu, to: &mut Array, at: usize, values: &Array) {
     write(gpu, all(gpu, values), to, at);
 }
 
+/// See [`crate::nn::rows::add_sum`].
+pub fn add_sum(gpu: &Gpu, values: &Array, to: &mut Array) {
+    let sum = column_sums(rows(gpu, values, 1)).add(all(gpu, to).narrow(0, 0, 1));
+    write(gpu, sum, to, 0);
+}
+
 /// See [`crate::nn::rows::decay`].
 pub fn decay(gpu: &Gpu, parameters: &Array, range: Range<usize>, rate: f32, gradient: &mut Array) {
     let part = |values: &Array| all(gpu, values).slice([range.clone()]);

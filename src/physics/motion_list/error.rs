@@ -130,7 +130,7 @@ pub enum UnusableClip {
         needed: usize,
     },
     /// Feet that stand in the air or under the ground.
-    #[error("the feet of '{clip}' stand {:.2} to {:.2} m above the ground (5th and 95th percentile of its frames), more than {most} m off: set `ground = true` on the clip, or for all clips, to bring them to the ground", .floor[0], .floor[1])]
+    #[error("the feet of '{clip}' stand {:.2} to {:.2} m above the ground (5th and 95th percentile of its frames), more than {most} m off: set `ground = true` on the clip, or give --ground for all clips, to bring them to the ground", .floor[0], .floor[1])]
     Feet {
         /// Name of the recording.
         clip: String,

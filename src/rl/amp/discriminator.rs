@@ -1,6 +1,7 @@
 //! Tells recorded motion from that of agents, and rewards agents for what it takes for recorded.
 
 use super::loss::{SUMS, TellApart};
+use super::pace::Pace;
 use super::replay::Replay;
 use super::{Amp, DiscriminatorLoss};
 use crate::container::{Section, SectionError};
@@ -38,6 +39,9 @@ pub struct Discriminator {
     sums: Array,
     /// Sum of the penalties' squared norms.
     penalties: Array,
+    /// Sum of the style rewards of the present rollouts.
+    style: Array,
+    pace: Pace,
     updates: u64,
     seed: u32,
 }
@@ -74,6 +78,8 @@ impl Discriminator {
             fresh: Array::zeroed(device, 0),
             sums: Array::zeroed(device, SUMS),
             penalties: Array::zeroed(device, 1),
+            style: Array::zeroed(device, 1),
+            pace: Pace::new(config.steps),
             updates: 0,
             seed,
             config: config.clone(),
@@ -93,6 +99,7 @@ impl Discriminator {
             .iter()
             .map(|rollout| self.windows(rollout))
             .collect();
+        self.style = Array::zeroed(&self.device, 1);
         for (rollout, windows) in rollouts.iter_mut().zip(&windows) {
             let samples = rollout.samples();
             let mut seen = windows.clone();
@@ -113,6 +120,7 @@ impl Discriminator {
                     style_reward::launch(gpu, output.buffer(), reward.buffer(), &params);
                 }
             }
+            rows::add_sum(&self.device, reward, &mut self.style);
         }
         self.fresh = rows::join(&self.device, &windows.iter().collect::<Vec<_>>());
     }
@@ -162,7 +170,7 @@ impl Discriminator {
         }
         self.sums = Array::zeroed(&self.device, SUMS);
         self.penalties = Array::zeroed(&self.device, 1);
-        for step in 0..self.config.steps {
+        for step in 0..self.pace.steps() {
             self.step(step);
         }
         if self.updates > 0 {
@@ -260,20 +268,28 @@ impl Discriminator {
             .step(&mut self.parameters, &self.gradient, rate, max);
     }
 
-    /// What the last update lost, and how often it was right, by their names in `metrics.jsonl`.
+    /// Closes an update: the style reward of a step, what the discriminator lost, and how often it was right,
+    /// by their names in `metrics.jsonl`.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn losses(&self) -> Result<Vec<(&'static str, f64)>> {
+    pub fn conclude(&mut self) -> Result<Vec<(&'static str, f64)>> {
         let sums = self.sums.read(&self.device)?;
         let penalties = self.penalties.read(&self.device)?[0];
+        let samples = (self.fresh.len() / self.dim()).max(1);
+        let style = f64::from(self.style.read(&self.device)?[0]) / samples as f64;
         let of = |i: usize| f64::from(sums[i]);
         let recorded = of(1).max(1.0);
+        let agents = of(4) / of(3).max(1.0);
+        let steps = self.pace.steps();
+        self.pace.update(agents, style);
         Ok(vec![
+            ("style_reward", style),
+            ("discriminator_steps", steps as f64),
             ("discriminator_loss", of(0) / (of(1) + of(3)).max(1.0)),
             ("discriminator_penalty", f64::from(penalties) / recorded),
             ("recorded_accuracy", of(2) / recorded),
-            ("agent_accuracy", of(4) / of(3).max(1.0)),
+            ("agent_accuracy", agents),
         ])
     }
 
@@ -283,6 +299,7 @@ impl Discriminator {
     /// The device was lost.
     pub fn save(&self, to: &mut Section) -> Result<()> {
         to.put("discriminator.updates", self.updates);
+        self.pace.save(to);
         let parameters = self.parameters.read(&self.device)?;
         to.put_array("discriminator.parameters", &parameters);
         self.adam.save(to)?;
@@ -296,6 +313,7 @@ impl Discriminator {
     /// It is of another discriminator.
     pub fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
         self.updates = from.get("discriminator.updates")?;
+        self.pace.load(from)?;
         let parameters = from.take_finite("discriminator.parameters", self.parameters.len())?;
         self.parameters = Array::from_slice(&self.device, &parameters);
         self.adam.load(from)?;

@@ -7,7 +7,6 @@ use crate::gpu::Device;
 use crate::nn::Policy;
 use crate::rl::gae::RewardSource;
 use crate::rl::ppo::{Ppo, PpoLearner};
-use crate::rl::rollout::Rollout;
 use crate::rl::{Algorithm, Iteration};
 use anyhow::{Result, bail};
 use std::sync::Arc;
@@ -17,7 +16,6 @@ use std::time::Instant;
 pub struct AmpLearner {
     ppo: PpoLearner,
     discriminator: Discriminator,
-    device: Device,
 }
 
 impl AmpLearner {
@@ -45,19 +43,7 @@ impl AmpLearner {
         Ok(AmpLearner {
             ppo: PpoLearner::with_rewards(ppo, envs, device, seed, &rewards)?,
             discriminator: Discriminator::new(amp, demonstrations, device, samples, seed)?,
-            device: device.clone(),
         })
-    }
-
-    /// Mean style reward of a step.
-    fn style(&self) -> Result<f64> {
-        let mut sum = 0.0;
-        for rollout in &self.ppo.rollouts {
-            let reward = rollout.style_reward.read(&self.device)?;
-            sum += reward.iter().map(|&reward| f64::from(reward)).sum::<f64>();
-        }
-        let samples: usize = self.ppo.rollouts.iter().map(Rollout::samples).sum();
-        Ok(sum / samples.max(1) as f64)
     }
 }
 
@@ -71,8 +57,7 @@ impl Algorithm for AmpLearner {
         self.ppo.learn();
         self.discriminator.learn();
         let mut iteration = self.ppo.conclude(envs, steps, begin, [policy_s, env_s])?;
-        iteration.losses.push(("style_reward", self.style()?));
-        iteration.losses.extend(self.discriminator.losses()?);
+        iteration.losses.extend(self.discriminator.conclude()?);
         match iteration
             .losses
             .iter()

@@ -8,6 +8,7 @@ pub mod discriminator;
 pub mod frozen_discriminator;
 pub mod learner;
 mod loss;
+mod pace;
 mod replay;
 
 pub use discriminator::Discriminator;

@@ -18,6 +18,10 @@ pub fn points(rows: &[UpdateMetrics]) -> Vec<Point> {
         success: row.success,
         episode_return: row.episode_return,
         episode_length: row.episode_length,
+        fall: row.rate("fall"),
+        style_reward: row.rate("style_reward"),
+        recorded_accuracy: row.rate("recorded_accuracy"),
+        agent_accuracy: row.rate("agent_accuracy"),
     });
     points.collect()
 }

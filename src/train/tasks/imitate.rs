@@ -1,27 +1,18 @@
 //! The task `imitate`: a simulated body moves like recordings, which a discriminator judges.
 
-use super::motions::{self, Performance};
-use super::presets::fast;
-use crate::env::humanoid::imitate::ImitateTask;
-use crate::env::humanoid::imitate::evaluate::{ImitateReport, evaluate};
-use crate::env::humanoid::task::{EpisodeRules, open, spec};
-use crate::env::{EnvBatch, EnvSpec};
-use crate::gpu::Device;
-use crate::nn::Policy;
-use crate::nn::layer::Activation;
-use crate::nn::network::NetworkConfig;
+use super::motion_training::{MotionTask, load};
+use super::motions::Performance;
+use super::presets::{discriminator, styled};
+use crate::env::EnvSpec;
+use crate::env::humanoid::fidelity::FidelityReport;
+use crate::env::humanoid::imitate::{ImitateTask, evaluate};
+use crate::env::humanoid::task::play::MeanPolicy;
+use crate::env::humanoid::task::{EpisodeRules, spec};
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
-use crate::rl::Algorithm;
-use crate::rl::amp::Amp;
-use crate::rl::ppo::Ppo;
-use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
-use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
-use crate::train::task::{Loaded, Task, TaskEntry};
-#[cfg(feature = "report")]
-use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
-use anyhow::Result;
+use crate::train::evaluation::Evaluation;
+use crate::train::task::TaskEntry;
 use std::sync::Arc;
 
 /// The task in the registry.
@@ -30,135 +21,77 @@ pub const ENTRY: TaskEntry = TaskEntry {
     about: "Move a simulated body like recordings",
     preset,
     spec: check,
-    load,
+    takes_motions: true,
+    load: |config| load::<Imitate>(config, scenes::humanoid()),
     ablations: &[],
 };
 
-/// The choices of learning of every task that has a discriminator.
-pub fn ppo() -> Ppo {
-    Ppo {
-        envs: 512,
-        rollout_length: 16,
-        epochs: 4,
-        minibatch_size: 2048,
-        // It soon finds its own; a higher one throws the first policy away.
-        learning_rate: 5e-5,
-        critic_learning_rate: 1e-3,
-        desired_kl: 0.02,
-        adapt_each_minibatch: true,
-        gamma: 0.97,
-        lambda: 0.95,
-        init_log_std: -2.9,
-        fixed_std: true,
-        normalize_observations: true,
-        network: NetworkConfig {
-            convolutions: Vec::new(),
-            encoder_hidden: Vec::new(),
-            hidden: vec![256, 128],
-            activation: Activation::Relu,
-        },
-        ..fast()
-    }
-}
-
-fn preset(_: Preset) -> TaskPreset {
+fn preset(preset: Preset) -> TaskPreset {
     TaskPreset {
         settings: table(&EpisodeRules::default()),
-        ppo: ppo(),
-        amp: Some(Amp::default()),
+        ppo: styled(preset),
+        amp: Some(discriminator(preset)),
         steps: 2_500_000,
     }
 }
 
 fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
-    let rules: EpisodeRules = settings(&config.task.settings)?;
-    rules.check().map_err(ConfigError::Settings)?;
+    let imitate = Imitate::of(config)?;
+    imitate.rules.check().map_err(ConfigError::Settings)?;
     Ok(spec(&scenes::humanoid(), 0, config.ppo.envs))
 }
 
-fn load(config: &Config) -> Result<Loaded> {
-    let rules = settings(&config.task.settings)?;
-    let model = Arc::new(scenes::humanoid());
-    let (library, notes) = motions::load(config, &model, Performance::Walk)?;
-    let task = ImitateTraining {
-        rules,
-        library: Arc::new(library),
-    };
-    Ok(Loaded {
-        task: Box::new(task),
-        notes,
-    })
-}
-
-/// A report as the trainer knows it.
-fn evaluation(found: &ImitateReport) -> Evaluation {
-    let measures = [
+/// What all tasks measure of motion.
+pub fn fidelity_measures(found: &FidelityReport) -> [(&'static str, f64); 4] {
+    [
         ("episode_length_mean_s", found.mean_episode_s),
         ("speed_ratio", found.speed_ratio),
         ("dtw_m", found.dtw_m),
         ("coverage", found.coverage),
-    ];
-    Evaluation {
-        episodes: found.episodes,
-        success: found.survival,
-        measures: measures.into_iter().collect(),
-    }
+    ]
 }
 
-struct ImitateTraining {
+#[derive(Clone)]
+struct Imitate {
     rules: EpisodeRules,
-    library: Arc<MotionLibrary>,
 }
 
-impl ImitateTraining {
-    fn task(&self, seed: u32) -> Arc<ImitateTask> {
-        Arc::new(ImitateTask::new(&self.rules, &self.library, seed))
+impl MotionTask for Imitate {
+    type Played = ImitateTask;
+    type Report = FidelityReport;
+
+    const PERFORMANCE: Performance = Performance::Walk;
+
+    fn of(config: &Config) -> Result<Self, ConfigError> {
+        let rules = settings(&config.task.settings)?;
+        Ok(Imitate { rules })
     }
 
-    fn rate(&self, policy: &Policy, episodes: usize) -> ImitateReport {
-        let mean = |observation: &[f32]| policy.mean(observation);
-        evaluate(self.task(EPISODES_SEED), &mean, episodes, EPISODES_SEED)
-    }
-}
-
-impl Task for ImitateTraining {
     fn settings(&self) -> toml::Table {
         table(&self.rules)
     }
 
-    fn with_choices(&self, config: &Config) -> Result<Box<dyn Task>, ConfigError> {
-        Ok(Box::new(ImitateTraining {
-            rules: settings(&config.task.settings)?,
-            library: self.library.clone(),
-        }))
+    fn played(&self, library: &Arc<MotionLibrary>, seed: u32) -> Arc<ImitateTask> {
+        Arc::new(ImitateTask::new(&self.rules, library, seed))
     }
 
-    fn fingerprint(&self) -> u32 {
-        motions::fingerprint(&self.library)
+    fn evaluate(
+        task: Arc<ImitateTask>,
+        _library: &MotionLibrary,
+        policy: &MeanPolicy,
+        episodes: usize,
+        seed: u32,
+    ) -> FidelityReport {
+        evaluate(task, policy, episodes, seed)
     }
 
-    fn describe(&self) -> String {
-        motions::describe(&self.library)
-    }
-
-    fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
-        let task = self.task(seed);
-        EnvBatch::open(device, envs, None, |part| {
-            open(device, task.clone(), part, seed)
-        })
-    }
-
-    fn learner(
-        &self,
-        config: &Config,
-        envs: &EnvBatch,
-        device: &Device,
-    ) -> Result<Box<dyn Algorithm>> {
-        motions::learner(config, &self.library, envs, device)
-    }
-
-    fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {
-        Ok(evaluation(&self.rate(policy, episodes)))
+    fn evaluation(found: &FidelityReport) -> Evaluation {
+        Evaluation {
+            episodes: found.episodes,
+            success: found.survival,
+            success_name: "survival",
+            measures: fidelity_measures(found).into_iter().collect(),
+        }
     }
 
     fn sentence(&self, found: &Evaluation) -> String {
@@ -172,29 +105,11 @@ impl Task for ImitateTraining {
         )
     }
 
-    fn report(&self, policy: &Policy, wanted: &EvalOptions) -> Result<EvalReport> {
-        motions::refuse_matching(wanted)?;
-        let found = self.rate(policy, wanted.episodes);
-        let evaluation = evaluation(&found);
-        Ok(EvalReport {
-            text: format!(
-                "{}\nepisode {:.2} s on average, coverage of the clips {:.0} %\n",
-                self.sentence(&evaluation),
-                found.mean_episode_s,
-                100.0 * found.coverage,
-            ),
-            json: serde_json::to_value(found)?,
-        })
-    }
-
-    #[cfg(feature = "report")]
-    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
-        figures::draw_curve(run, rows)
-    }
-
-    fn body(&self) -> Option<BodyEpisodes> {
-        let (rules, library) = (self.rules, self.library.clone());
-        let task = move |seed| ImitateTask::new(&rules, &library, seed);
-        Some(BodyEpisodes::new(task, Some(&self.library)))
+    fn details(found: &FidelityReport) -> String {
+        format!(
+            "episode {:.2} s on average, coverage of the clips {:.0} %\n",
+            found.mean_episode_s,
+            100.0 * found.coverage,
+        )
     }
 }

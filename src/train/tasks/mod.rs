@@ -1,23 +1,26 @@
 //! The tasks, a file each, and the one list of them.
 
 pub mod imitate;
+mod motion_training;
 mod motions;
 pub mod obstacles;
 pub mod plane;
 mod presets;
 pub mod punch;
 pub mod stand;
+pub mod track;
 
 use super::config::{Config, ConfigError, Preset, nearest};
 use super::run_dir::RunDir;
 use super::task::TaskEntry;
 
 /// Every task there is.
-pub static REGISTRY: [TaskEntry; 6] = [
+pub static REGISTRY: [TaskEntry; 7] = [
     plane::ENTRY,
     obstacles::ENTRY,
     stand::ENTRY,
     imitate::ENTRY,
+    track::ENTRY,
     punch::PUNCH,
     punch::JOYSTICK,
 ];

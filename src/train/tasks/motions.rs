@@ -1,6 +1,7 @@
 //! What the tasks of a simulated body share: the recordings that it is to move like, and what learns it.
 
 use crate::env::EnvBatch;
+use crate::env::humanoid::punch::evaluate::BOXING;
 use crate::env::humanoid::recorded::demonstrations;
 use crate::gpu::Device;
 use crate::motion::synthetic;
@@ -8,7 +9,7 @@ use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::motion_list::{ClipReport, MotionList, MotionListOptions};
 use crate::rl::Algorithm;
-use crate::rl::amp::AmpLearner;
+use crate::rl::amp::{Amp, AmpLearner};
 use crate::train::config::Config;
 use crate::train::data::SYNTHETIC_SEED;
 use crate::train::evaluation::EvalOptions;
@@ -66,10 +67,13 @@ fn performed(performance: Performance, model: &Arc<Model>) -> Result<MotionLibra
         return Ok(MotionLibrary::of(&clips, &roles, model)?);
     }
     let (mut clips, roles) = synthetic::perform(SYNTHETIC_SEED, MINUTES);
+    let walks = clips.len();
     let (boxing, _) = synthetic::perform_boxing(SYNTHETIC_SEED, MINUTES);
     clips.extend(boxing);
+    let mut kinds = vec![String::new(); walks];
+    kinds.resize(clips.len(), BOXING.to_string());
     // Both are as long: by their seconds, half of what is drawn is boxing.
-    Ok(MotionLibrary::of(&clips, &roles, model)?)
+    Ok(MotionLibrary::of(&clips, &roles, model)?.with_kinds(kinds)?)
 }
 
 /// What came of a recording.
@@ -92,14 +96,14 @@ fn line(clip: &ClipReport) -> String {
 /// A network does not fit the observations, or the device.
 pub fn learner(
     config: &Config,
+    amp: &Amp,
     library: &MotionLibrary,
     envs: &EnvBatch,
     device: &Device,
 ) -> Result<Box<dyn Algorithm>> {
-    let amp = config.amp.clone().unwrap_or_default();
     let (ppo, seed) = (&config.ppo, config.seed);
     let demonstrations = Arc::new(demonstrations(library));
-    let learner = AmpLearner::new(ppo, &amp, &demonstrations, envs, device, seed)?;
+    let learner = AmpLearner::new(ppo, amp, &demonstrations, envs, device, seed)?;
     Ok(Box::new(learner))
 }
 

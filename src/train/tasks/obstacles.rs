@@ -22,6 +22,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     about: "Reach a target among 100 moving obstacles",
     preset,
     spec,
+    takes_motions: false,
     load,
     ablations: &[PARTS, REWARDS],
 };

@@ -21,6 +21,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     about: "Reach a target on an empty plane",
     preset,
     spec,
+    takes_motions: false,
     load,
     ablations: &[],
 };

@@ -2,7 +2,9 @@
 
 use crate::nn::layer::{Activation, Convolution};
 use crate::nn::network::NetworkConfig;
+use crate::rl::amp::Amp;
 use crate::rl::ppo::Ppo;
+use crate::train::config::Preset;
 
 /// What trains the plane quickest on two cores.
 pub fn fast() -> Ppo {
@@ -84,6 +86,66 @@ pub fn convolutional(stride: usize) -> NetworkConfig {
         convolutions: vec![convolution(16, 4), convolution(32, 3)],
         encoder_hidden: vec![128],
         hidden: vec![256, 128],
+        activation: Activation::Relu,
+    }
+}
+
+/// The learner of a body whose style a discriminator judges, with small updates for processors; or with the
+/// sizes and rates that are published for large GPUs (IsaacGymEnvs' AMP).
+pub fn styled(preset: Preset) -> Ppo {
+    let small = Ppo {
+        envs: 512,
+        rollout_length: 16,
+        epochs: 4,
+        minibatch_size: 2048,
+        // It soon finds its own; a higher one throws the first policy away.
+        learning_rate: 5e-5,
+        critic_learning_rate: 1e-3,
+        desired_kl: 0.02,
+        adapt_each_minibatch: true,
+        gamma: 0.97,
+        lambda: 0.95,
+        init_log_std: -2.9,
+        fixed_std: true,
+        normalize_observations: true,
+        network: relu(vec![256, 128]),
+        ..fast()
+    };
+    match preset {
+        Preset::Fast => small,
+        Preset::Paper => Ppo {
+            envs: 4096,
+            epochs: 6,
+            minibatch_size: 32768,
+            critic_learning_rate: 0.0,
+            desired_kl: 0.0,
+            adapt_each_minibatch: false,
+            gamma: 0.99,
+            network: relu(vec![1024, 512]),
+            ..small
+        },
+    }
+}
+
+/// The discriminator of either.
+pub fn discriminator(preset: Preset) -> Amp {
+    match preset {
+        Preset::Fast => Amp::default(),
+        Preset::Paper => Amp {
+            hidden: vec![1024, 512],
+            minibatch_size: 4096,
+            learning_rate: 5e-5,
+            replay_capacity: 100_000,
+            ..Amp::default()
+        },
+    }
+}
+
+fn relu(hidden: Vec<usize>) -> NetworkConfig {
+    NetworkConfig {
+        convolutions: Vec::new(),
+        encoder_hidden: Vec::new(),
+        hidden,
         activation: Activation::Relu,
     }
 }

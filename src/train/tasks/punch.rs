@@ -1,37 +1,51 @@
 //! The tasks `punch` and `joystick`: a simulated body goes up to a box and topples it, in the style of
 //! recordings.
 
-use super::imitate::ppo;
-use super::motions::{self, Performance};
+use super::imitate::fidelity_measures;
+use super::motion_training::{MotionTask, load};
+use super::motions::Performance;
+use super::presets::{discriminator, styled};
+use crate::env::EnvSpec;
 use crate::env::humanoid::punch::evaluate::{PunchReport, evaluate};
-use crate::env::humanoid::punch::{Punch, PunchTask};
-use crate::env::humanoid::task::{open, spec};
-use crate::env::{EnvBatch, EnvSpec};
-use crate::gpu::Device;
+use crate::env::humanoid::punch::{FarReward, Punch, PunchTask};
+use crate::env::humanoid::task::play::MeanPolicy;
+use crate::env::humanoid::task::spec;
 use crate::kernels::humanoid::punch_observe;
-use crate::nn::Policy;
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
-use crate::rl::Algorithm;
 use crate::rl::amp::Amp;
 use crate::rl::ppo::Ppo;
-use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
-use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
-use crate::train::task::{Ablation, Loaded, Measure, Task, TaskEntry, Variant};
-#[cfg(feature = "report")]
-use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
-use anyhow::Result;
+use crate::train::evaluation::Evaluation;
+use crate::train::task::{Ablation, Measure, TaskEntry, Variant};
 use std::sync::Arc;
 
 /// The task `punch` in the registry.
 pub const PUNCH: TaskEntry = TaskEntry {
     name: "punch",
     about: "Let a simulated body run up to a box and topple it",
-    preset,
+    preset: |chosen| preset(chosen, Punch::default()),
     spec: check,
-    load,
+    takes_motions: true,
+    load: |config| load::<TargetTask>(config, scenes::humanoid()),
     ablations: &[ABLATION],
+};
+
+/// The task `joystick` in the registry.
+pub const JOYSTICK: TaskEntry = TaskEntry {
+    name: "joystick",
+    about: "Let it walk to the box while it faces any way that is wanted",
+    preset: |chosen| {
+        let punch = Punch {
+            far: FarReward::Velocity,
+            // It is the way that is to be learned.
+            near_share: 0.2,
+            ..Punch::default()
+        };
+        preset(chosen, punch)
+    },
+    ablations: &[],
+    ..PUNCH
 };
 
 /// The paper's figure 3, and the forms of the reward for a far target.
@@ -71,129 +85,97 @@ const ABLATION: Ablation = Ablation {
     ],
 };
 
-/// The task `joystick` in the registry.
-pub const JOYSTICK: TaskEntry = TaskEntry {
-    name: "joystick",
-    about: "The same, while it faces any way that is wanted",
-    ablations: &[],
-    ..PUNCH
-};
-
-fn preset(_: Preset) -> TaskPreset {
+fn preset(chosen: Preset, punch: Punch) -> TaskPreset {
     TaskPreset {
-        settings: table(&Punch::default()),
+        settings: table(&punch),
         ppo: Ppo {
             // With less, most falls are slow tips out of the guard.
             gamma: 0.99,
-            ..ppo()
+            ..styled(chosen)
         },
         amp: Some(Amp {
             style_weight: 0.5,
             task_weight: 0.5,
-            ..Amp::default()
+            ..discriminator(chosen)
         }),
         steps: 10_000_000,
     }
 }
 
-fn is_joystick(config: &Config) -> bool {
-    config.task.name == JOYSTICK.name
-}
-
 fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
-    let punch: Punch = settings(&config.task.settings)?;
-    punch.check().map_err(ConfigError::Settings)?;
-    let added = punch_observe::dim(is_joystick(config));
+    let task = TargetTask::of(config)?;
+    task.punch.check().map_err(ConfigError::Settings)?;
+    let added = punch_observe::dim(task.joystick);
     Ok(spec(&scenes::humanoid_and_box(), added, config.ppo.envs))
 }
 
-fn load(config: &Config) -> Result<Loaded> {
-    let model = Arc::new(scenes::humanoid());
-    let (library, notes) = motions::load(config, &model, Performance::Boxing)?;
-    let task = PunchTraining {
-        punch: settings(&config.task.settings)?,
-        joystick: is_joystick(config),
-        library: Arc::new(library),
-    };
-    Ok(Loaded {
-        task: Box::new(task),
-        notes,
-    })
-}
-
-/// A report as the trainer knows it.
-fn evaluation(found: &PunchReport) -> Evaluation {
-    let measures = [
-        ("episode_length_mean_s", found.mean_episode_s),
-        ("survival", found.survival),
-        ("fist_rate", found.fist_rate),
-        ("time_to_hit_mean_s", found.time_to_hit_mean_s),
-        ("facing_error_deg", found.facing_error_deg),
-    ];
-    Evaluation {
-        episodes: found.episodes,
-        success: found.hit_rate,
-        measures: measures.into_iter().collect(),
-    }
-}
-
-struct PunchTraining {
+#[derive(Clone)]
+struct TargetTask {
     punch: Punch,
     joystick: bool,
-    library: Arc<MotionLibrary>,
 }
 
-impl PunchTraining {
-    fn task(&self, punch: &Punch, seed: u32) -> Arc<PunchTask> {
-        Arc::new(PunchTask::new(punch, self.joystick, &self.library, seed))
+impl MotionTask for TargetTask {
+    type Played = PunchTask;
+    type Report = PunchReport;
+
+    const PERFORMANCE: Performance = Performance::Boxing;
+
+    fn of(config: &Config) -> Result<Self, ConfigError> {
+        Ok(TargetTask {
+            punch: settings(&config.task.settings)?,
+            joystick: config.task.name == JOYSTICK.name,
+        })
     }
 
-    fn rate(&self, policy: &Policy, episodes: usize) -> PunchReport {
-        let mean = |observation: &[f32]| policy.mean(observation);
-        let task = self.task(&self.punch.evaluated(), EPISODES_SEED);
-        evaluate(task, &mean, episodes, EPISODES_SEED)
-    }
-}
-
-impl Task for PunchTraining {
     fn settings(&self) -> toml::Table {
         table(&self.punch)
     }
 
-    fn with_choices(&self, config: &Config) -> Result<Box<dyn Task>, ConfigError> {
-        Ok(Box::new(PunchTraining {
-            punch: settings(&config.task.settings)?,
-            joystick: self.joystick,
-            library: self.library.clone(),
-        }))
+    fn played(&self, library: &Arc<MotionLibrary>, seed: u32) -> Arc<PunchTask> {
+        Arc::new(PunchTask::new(&self.punch, self.joystick, library, seed))
     }
 
-    fn fingerprint(&self) -> u32 {
-        motions::fingerprint(&self.library)
+    fn judged(&self, library: &Arc<MotionLibrary>, seed: u32) -> Arc<PunchTask> {
+        let punch = self.punch.evaluated();
+        Arc::new(PunchTask::new(&punch, self.joystick, library, seed))
     }
 
-    fn describe(&self) -> String {
-        motions::describe(&self.library)
+    fn evaluate(
+        task: Arc<PunchTask>,
+        library: &MotionLibrary,
+        policy: &MeanPolicy,
+        episodes: usize,
+        seed: u32,
+    ) -> PunchReport {
+        evaluate(task, library, policy, episodes, seed)
     }
 
-    fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
-        let task = self.task(&self.punch, seed);
-        EnvBatch::open(device, envs, None, |part| {
-            open(device, task.clone(), part, seed)
-        })
-    }
-
-    fn learner(
-        &self,
-        config: &Config,
-        envs: &EnvBatch,
-        device: &Device,
-    ) -> Result<Box<dyn Algorithm>> {
-        motions::learner(config, &self.library, envs, device)
-    }
-
-    fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {
-        Ok(evaluation(&self.rate(policy, episodes)))
+    fn evaluation(found: &PunchReport) -> Evaluation {
+        let own = [
+            ("survival", found.fidelity.survival),
+            ("fist_rate", found.fist_rate),
+            ("time_to_hit_mean_s", found.time_to_hit_mean_s),
+            ("facing_error_deg", found.facing_error_deg),
+        ];
+        let boxing = found.boxing_share.map(|share| ("boxing_share", share));
+        let steering = found.steering.map(|steering| {
+            [
+                ("heading_error_deg", steering.heading_error_deg),
+                ("heading_within_15_deg", steering.heading_within_15_deg),
+                ("speed_error", steering.speed_error),
+            ]
+        });
+        let measures = fidelity_measures(&found.fidelity).into_iter().chain(own);
+        Evaluation {
+            episodes: found.fidelity.episodes,
+            success: found.hit_rate,
+            success_name: "hit_rate",
+            measures: measures
+                .chain(boxing)
+                .chain(steering.into_iter().flatten())
+                .collect(),
+        }
     }
 
     fn sentence(&self, found: &Evaluation) -> String {
@@ -208,29 +190,27 @@ impl Task for PunchTraining {
         )
     }
 
-    fn report(&self, policy: &Policy, wanted: &EvalOptions) -> Result<EvalReport> {
-        motions::refuse_matching(wanted)?;
-        let found = self.rate(policy, wanted.episodes);
-        let evaluation = evaluation(&found);
-        Ok(EvalReport {
-            text: format!(
-                "{}\nfacing error {:.0} degrees while the target is far\n",
-                self.sentence(&evaluation),
-                found.facing_error_deg
-            ),
-            json: serde_json::to_value(found)?,
-        })
-    }
-
-    #[cfg(feature = "report")]
-    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
-        figures::draw_curve(run, rows)
-    }
-
-    fn body(&self) -> Option<BodyEpisodes> {
-        let (punch, joystick) = (self.punch.evaluated(), self.joystick);
-        let library = self.library.clone();
-        let task = move |seed| PunchTask::new(&punch, joystick, &library, seed);
-        Some(BodyEpisodes::new(task, Some(&self.library)))
+    fn details(found: &PunchReport) -> String {
+        let mut text = format!(
+            "{:.2} of the recordings' speed, {:.3} m from them, coverage of the clips {:.0} %\n\
+             facing error {:.0} degrees while the target is far\n",
+            found.fidelity.speed_ratio,
+            found.fidelity.dtw_m,
+            100.0 * found.fidelity.coverage,
+            found.facing_error_deg
+        );
+        if let Some(share) = found.boxing_share {
+            let share = 100.0 * share;
+            text += &format!("{share:.0} % of the poses near the target are nearest to boxing\n");
+        }
+        if let Some(steering) = &found.steering {
+            text += &format!(
+                "heading error {:.0} degrees, at most 15 in {:.0} % of the time; speed error {:.2} m/s\n",
+                steering.heading_error_deg,
+                100.0 * steering.heading_within_15_deg,
+                steering.speed_error
+            );
+        }
+        text
     }
 }

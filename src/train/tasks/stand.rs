@@ -27,6 +27,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     about: "Keep a simulated body upright while it is pushed",
     preset,
     spec: check,
+    takes_motions: false,
     load,
     ablations: &[],
 };
@@ -127,6 +128,7 @@ impl Task for StandTraining {
         Ok(Evaluation {
             episodes: found.episodes,
             success: found.survival,
+            success_name: "survival",
             measures: measures.into_iter().collect(),
         })
     }
@@ -161,9 +163,7 @@ impl Task for StandTraining {
 
     fn body(&self) -> Option<BodyEpisodes> {
         let stand = self.stand;
-        Some(BodyEpisodes::new(
-            move |seed| StandTask::new(&stand, seed),
-            None,
-        ))
+        let task = move |seed| Arc::new(StandTask::new(&stand, seed));
+        Some(BodyEpisodes::new(task, None))
     }
 }

@@ -1,2 +1,3 @@
+mod mirrored;
 mod stand;
 mod style;

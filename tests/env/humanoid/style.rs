@@ -1,4 +1,4 @@
-//! The tasks `imitate`, `punch` and `joystick`.
+//! The tasks `imitate`, `punch`, `joystick` and `track`.
 //! Oracle: the same environments on the other device, or from a saved state; recorded motion. Bar: equal bit
 //! for bit on one device; between devices what the physics' rounding grows to.
 
@@ -8,6 +8,7 @@ use footwork::env::humanoid::imitate::ImitateTask;
 use footwork::env::humanoid::punch::{Punch, PunchTask};
 use footwork::env::humanoid::recorded::{demonstrations, observe};
 use footwork::env::humanoid::task::{CpuHumanoidEnv, EpisodeRules, HumanoidTask, open};
+use footwork::env::humanoid::track::{Track, TrackTask};
 use footwork::env::{Transition, VecEnv, termination};
 use footwork::gpu::{Array, Device};
 use footwork::motion::synthetic::{perform_boxing, perform_walk};
@@ -31,17 +32,22 @@ fn rules(episode_s: f32) -> EpisodeRules {
     }
 }
 
-/// The three tasks, with episodes of so many seconds.
-fn tasks(episode_s: f32) -> [Arc<dyn HumanoidTask>; 3] {
+/// The tasks, with episodes of so many seconds.
+fn tasks(episode_s: f32) -> [Arc<dyn HumanoidTask>; 4] {
     let punch = Punch {
         rules: rules(episode_s),
         after_hit_s: 0.2,
         ..Punch::default()
     };
+    let track = Track {
+        rules: rules(episode_s),
+        ..Track::default()
+    };
     [
         Arc::new(ImitateTask::new(&rules(episode_s), &LIBRARY, 3)),
         Arc::new(PunchTask::new(&punch, false, &LIBRARY, 3)),
         Arc::new(PunchTask::new(&punch, true, &LIBRARY, 3)),
+        Arc::new(TrackTask::new(&track, &LIBRARY, 3)),
     ]
 }
 
@@ -233,7 +239,7 @@ fn a_frozen_discriminator_rewards_as_it_did() {
 /// A box that has been put elsewhere is as one that always stood there.
 #[test]
 fn a_moved_target_stands_where_it_was_put() {
-    let [_, _, joystick] = tasks(10.0);
+    let [_, _, joystick, _] = tasks(10.0);
     let mut envs = CpuHumanoidEnv::unstaggered(joystick, 0..2, 4);
     let rest = Array::Host(envs.rest_action().repeat(2));
     let still = envs.batch.worlds[0].state.q.clone();

@@ -3,6 +3,7 @@
 //! else a few roundings.
 
 mod punch;
+mod track;
 
 use crate::inputs::{Draw, POISON, SIZES, close, same};
 use end_episode::fields;

@@ -30,6 +30,7 @@ fn params(envs: usize) -> punch_reward::Params {
         steps_after: 60,
         speed: 1.2,
         near: 1.2,
+        hand_speed: 1.0,
         fist_speed: 3.0,
     }
 }
@@ -67,7 +68,7 @@ fn punch_rewards_agree() {
     for (case, envs) in SIZES.into_iter().cycle().take(12).enumerate() {
         let params = punch_reward::Params {
             joystick: case as u32 % 2,
-            far: case as u32 % 3,
+            far: case as u32 % 4,
             facing: u32::from(case % 4 > 0),
             fist_only: u32::from(case % 5 == 0),
             ..params(envs)
@@ -270,7 +271,16 @@ fn far_rewards_as_printed_and_repaired() {
     assert!(of(2, 4.0, Vec2::ZERO, 0.0) > sum);
     assert!(of(2, 5.0, Vec2::X * 0.1, 0.0) > sum && of(2, 5.0, -Vec2::X * 0.1, 0.0) < sum);
     assert!(of(2, 5.0, Vec2::ZERO, 0.1) > sum && of(2, 5.0, Vec2::ZERO, -0.1) < sum);
-    for far in 0..3 {
+    // So has that of a velocity, which wants no more than the wanted speed, and the wanted direction.
+    let still = of(3, 5.0, Vec2::ZERO, 0.0);
+    assert!(of(3, 4.0, Vec2::ZERO, 0.0) > still);
+    assert!(of(3, 5.0, Vec2::X * 0.1, 0.0) > still && of(3, 5.0, -Vec2::X * 0.1, 0.0) < still);
+    assert!(of(3, 5.0, Vec2::ZERO, 0.1) > still && of(3, 5.0, Vec2::ZERO, -0.1) < still);
+    let best = of(3, 5.0, wanted, 1.0);
+    for other in [Vec2::X * 1.1, Vec2::X * 1.3, Vec2::new(1.2, 0.1)] {
+        assert!(of(3, 5.0, other, 1.0) < best, "{other}");
+    }
+    for far in 0..4 {
         for speed in [-3.0, 0.0, 1.2, 9.0] {
             for alignment in [-1.0, 0.0, 1.0] {
                 let reward = of(far, 3.0, Vec2::X * speed, alignment);

@@ -11,4 +11,4 @@ mod random_targets;
 mod reset_worlds;
 mod smooth_dynamics;
 mod solve_and_integrate;
-mod worlds;
+pub mod worlds;

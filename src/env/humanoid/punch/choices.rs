@@ -11,8 +11,10 @@ pub enum FarReward {
     Printed,
     /// The product, with 1 / (1 + distance).
     Slow,
-    /// A sum with a slope everywhere.
+    /// A sum with a slope everywhere, of the speed toward the target.
     Additive,
+    /// A sum with a slope everywhere, of the difference from the wanted velocity.
+    Velocity,
 }
 
 /// What hits the target.
@@ -44,7 +46,7 @@ pub struct Punch {
     pub far: FarReward,
     /// Whether facing is rewarded.
     pub facing: bool,
-    /// Wanted speed of the product, m/s.
+    /// Wanted speed on the way, m/s; additive rewards want to be quick.
     pub speed: f32,
     /// Distance below which hands are rewarded, m.
     pub near: f32,
@@ -52,6 +54,8 @@ pub struct Punch {
     pub hit: Hit,
     /// Speed below which a hand is no fist, m/s.
     pub fist_speed: f32,
+    /// Speed of a hand toward a near target at which its reward is largest, m/s.
+    pub hand_speed: f32,
     /// Time for which an episode goes on after a hit, s.
     pub after_hit_s: f32,
 }
@@ -73,17 +77,20 @@ impl Default for Punch {
             near: 1.2,
             hit: Hit::Tilt,
             fist_speed: 3.0,
+            hand_speed: 1.0,
             after_hit_s: 2.0,
         }
     }
 }
 
 impl Punch {
-    /// Choices with the targets of an evaluation: all between 5 and 10 m away, at any bearing.
+    /// Choices with the targets of an evaluation: all between 5 and 10 m away, at any bearing; toppled anyhow,
+    /// since it tells those that a fist topples.
     pub fn evaluated(self) -> Self {
         Punch {
             near_share: 0.0,
             distance: [5.0, 10.0],
+            hit: Hit::Tilt,
             ..self
         }
     }
@@ -111,6 +118,11 @@ impl Punch {
             ("fist_speed", self.fist_speed),
             ("after_hit_s", self.after_hit_s),
         ])?;
+        for (name, speed) in [("speed", self.speed), ("hand_speed", self.hand_speed)] {
+            if speed < 0.01 {
+                return Err(format!("{name} must be at least 0.01 m/s"));
+            }
+        }
         for (name, [least, most]) in [
             ("near_distance", self.near_distance),
             ("distance", self.distance),

@@ -5,6 +5,7 @@
 
 mod choices;
 pub mod evaluate;
+mod steering;
 
 use super::batch::SimulatedWorld;
 use super::recorded::{mean_action, start_states};
@@ -12,7 +13,7 @@ use super::task::{
     EpisodeRules, GpuHumanoidTask, HumanoidTask, StepContext, StepOutcome, TaskBuffers,
 };
 use crate::gpu::{Buffer, Gpu};
-use crate::kernels::humanoid::punch_state::PUNCH_STATE;
+use crate::kernels::humanoid::punch_state::{HIT_STEPS, MOVING, PUNCH_STATE};
 use crate::kernels::humanoid::{place_target, punch_observe, punch_reward};
 use crate::kernels::physics::smooth_dynamics::DynamicsLayout;
 use crate::kernels::termination::SUCCESS;
@@ -21,6 +22,7 @@ use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
 use crate::physics::simulator::{Simulator, SimulatorState};
 pub use choices::{FarReward, Hit, Punch};
+use glam::Vec2;
 use std::sync::Arc;
 
 /// The task with the motion in which it begins.
@@ -57,6 +59,27 @@ impl PunchTask {
     /// The choices.
     pub fn punch(&self) -> &Punch {
         &self.punch
+    }
+
+    /// Whether facing and moving are wanted apart.
+    pub fn joystick(&self) -> bool {
+        self.params.observe.joystick == 1
+    }
+
+    /// From the root to the target on the ground, m, of a world with the positions `q`.
+    pub fn gap(&self, q: &[f32]) -> Vec2 {
+        let target = self.params.place.target_q as usize;
+        Vec2::from_slice(&q[target..]) - Vec2::from_slice(q)
+    }
+
+    /// Whether the target of a world with this state of the task has been hit.
+    pub fn is_hit(&self, state: &[f32]) -> bool {
+        state[HIT_STEPS] > 0.0
+    }
+
+    /// The direction in which the joystick of a world with this state points, a unit vector on the ground.
+    pub fn wanted_direction(&self, state: &[f32]) -> Vec2 {
+        Vec2::from_slice(&state[MOVING..])
     }
 }
 
@@ -109,6 +132,7 @@ fn params(punch: &Punch, joystick: bool, model: &Model) -> Params {
             steps_after: punch.steps_after_hit(),
             speed: punch.speed,
             near: punch.near,
+            hand_speed: punch.hand_speed,
             fist_speed: punch.fist_speed,
         },
         observe: punch_observe::Params {
@@ -171,7 +195,7 @@ impl HumanoidTask for PunchTask {
     }
 
     fn observation(&self) -> usize {
-        punch_observe::dim(self.params.observe.joystick == 1)
+        punch_observe::dim(self.joystick())
     }
 
     fn state_dim(&self) -> usize {

@@ -79,6 +79,11 @@ pub trait HumanoidTask: Send + Sync {
     /// Begins an episode: changes the start state that was drawn, `[nq + nv]`, and sets the task's.
     fn begin(&self, _env: usize, _moment: &StepContext, _start: &mut [f32], _state: &mut [f32]) {}
 
+    /// Positions at which a body should be now, if the task says so.
+    fn wanted(&self, _state: &[f32]) -> Option<&[f32]> {
+        None
+    }
+
     /// Puts the target elsewhere on the ground, m, if the task has one.
     fn move_target(&self, _at: [f32; 2], _world: &mut SimulatorState, _state: &mut [f32]) {}
 

@@ -34,7 +34,7 @@ impl PoseTrack {
     }
 
     /// Consecutive parts of so many frames; one of less than a third of that is left out.
-    pub fn stretches(&self, frames: usize) -> impl Iterator<Item = PoseTrack> {
+    pub fn parts(&self, frames: usize) -> impl Iterator<Item = PoseTrack> {
         let parts = self.frames.chunks(frames);
         let parts = parts.filter(move |part| 3 * part.len() >= frames);
         parts.map(|frames| PoseTrack {

@@ -1,13 +1,12 @@
 //! The task `imitate`: move as recordings do. There is no reward but that of the style.
 //!
-//! [`ImitateTask`] begins episodes in recorded moments; [`evaluate`](evaluate::evaluate) compares what a
-//! policy does with the recordings.
+//! [`ImitateTask`] begins episodes in recorded moments; [`evaluate`] compares what a policy does with the
+//! recordings.
 
-pub mod evaluate;
-mod pose_track;
-
+use super::fidelity::{FidelityProbe, FidelityReport};
 use super::recorded::{mean_action, start_states};
-use super::task::{COMMON_STATS, EpisodeRules, GpuHumanoidTask, HumanoidTask};
+use super::task::play::{MeanPolicy, play_episodes};
+use super::task::{COMMON_STATS, CpuHumanoidEnv, EpisodeRules, GpuHumanoidTask, HumanoidTask};
 use crate::gpu::Gpu;
 use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
@@ -60,3 +59,19 @@ impl HumanoidTask for ImitateTask {
 struct GpuImitate;
 
 impl GpuHumanoidTask for GpuImitate {}
+
+/// Plays `episodes` episodes, whose starts depend on `seed` alone.
+pub fn evaluate(
+    task: Arc<ImitateTask>,
+    policy: &MeanPolicy,
+    episodes: usize,
+    seed: u32,
+) -> FidelityReport {
+    let library = task.library.clone();
+    let mut envs = CpuHumanoidEnv::unstaggered(task, 0..episodes, seed);
+    let mut probe = FidelityProbe::new(&library, &envs);
+    let found = play_episodes(&mut envs, policy, |envs, running| {
+        probe.observe(envs, running);
+    });
+    probe.report(&found)
+}

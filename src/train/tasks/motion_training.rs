@@ -1,0 +1,168 @@
+//! What the tasks of a simulated body with recordings share: [`MotionTraining`] is a [`Task`] of any
+//! [`MotionTask`].
+
+use super::motions;
+use crate::env::EnvBatch;
+use crate::env::humanoid::task::play::MeanPolicy;
+use crate::env::humanoid::task::{HumanoidTask, open};
+use crate::gpu::Device;
+use crate::nn::Policy;
+use crate::physics::model::Model;
+use crate::physics::motion_library::MotionLibrary;
+use crate::rl::Algorithm;
+use crate::rl::ppo::PpoLearner;
+use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
+use crate::train::config::{Config, ConfigError};
+use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
+use crate::train::task::{Loaded, Task};
+#[cfg(feature = "report")]
+use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
+use anyhow::Result;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// What a task of a simulated body with recordings decides for itself. Its value holds the choices.
+pub trait MotionTask: Clone + Send + Sync + 'static {
+    /// What its environments play.
+    type Played: HumanoidTask + 'static;
+    /// What an evaluation finds.
+    type Report: Serialize;
+
+    /// What the performer does where no recordings are given.
+    const PERFORMANCE: motions::Performance;
+
+    /// The choices of a configuration.
+    ///
+    /// # Errors
+    /// An unknown or a wrong one.
+    fn of(config: &Config) -> Result<Self, ConfigError>;
+
+    /// The choices as the table `[task]`, but for the name.
+    fn settings(&self) -> toml::Table;
+
+    /// The task in a training; its start states depend on `seed`.
+    fn played(&self, library: &Arc<MotionLibrary>, seed: u32) -> Arc<Self::Played>;
+
+    /// The task in an evaluation.
+    fn judged(&self, library: &Arc<MotionLibrary>, seed: u32) -> Arc<Self::Played> {
+        self.played(library, seed)
+    }
+
+    /// Plays `episodes` episodes, whose starts depend on `seed` alone.
+    fn evaluate(
+        task: Arc<Self::Played>,
+        library: &MotionLibrary,
+        policy: &MeanPolicy,
+        episodes: usize,
+        seed: u32,
+    ) -> Self::Report;
+
+    /// A report as the trainer knows it.
+    fn evaluation(report: &Self::Report) -> Evaluation;
+
+    /// An evaluation in a sentence without its full stop.
+    fn sentence(&self, found: &Evaluation) -> String;
+
+    /// What else `footwork eval` tells, in lines.
+    fn details(report: &Self::Report) -> String;
+}
+
+/// A task with its choices made and its recordings loaded.
+pub struct MotionTraining<T> {
+    task: T,
+    library: Arc<MotionLibrary>,
+}
+
+/// Loads the recordings of a task.
+///
+/// # Errors
+/// A wrong choice; recordings that are missing or damaged, or of nobody that the body could move like.
+pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
+    let task = T::of(config)?;
+    let (library, notes) = motions::load(config, &Arc::new(body), T::PERFORMANCE)?;
+    let library = Arc::new(library);
+    Ok(Loaded {
+        task: Box::new(MotionTraining { task, library }),
+        notes,
+    })
+}
+
+impl<T: MotionTask> MotionTraining<T> {
+    fn rate(&self, policy: &Policy, episodes: usize) -> T::Report {
+        let mean = |observation: &[f32]| policy.mean(observation);
+        let task = self.task.judged(&self.library, EPISODES_SEED);
+        T::evaluate(task, &self.library, &mean, episodes, EPISODES_SEED)
+    }
+}
+
+impl<T: MotionTask> Task for MotionTraining<T> {
+    fn settings(&self) -> toml::Table {
+        self.task.settings()
+    }
+
+    fn with_choices(&self, config: &Config) -> Result<Box<dyn Task>, ConfigError> {
+        Ok(Box::new(MotionTraining {
+            task: T::of(config)?,
+            library: self.library.clone(),
+        }))
+    }
+
+    fn fingerprint(&self) -> u32 {
+        motions::fingerprint(&self.library)
+    }
+
+    fn describe(&self) -> String {
+        motions::describe(&self.library)
+    }
+
+    fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
+        let task = self.task.played(&self.library, seed);
+        EnvBatch::open(device, envs, None, |part| {
+            open(device, task.clone(), part, seed)
+        })
+    }
+
+    fn learner(
+        &self,
+        config: &Config,
+        envs: &EnvBatch,
+        device: &Device,
+    ) -> Result<Box<dyn Algorithm>> {
+        match &config.amp {
+            Some(amp) => motions::learner(config, amp, &self.library, envs, device),
+            None => {
+                let learner = PpoLearner::new(&config.ppo, envs, device, config.seed)?;
+                Ok(Box::new(learner))
+            }
+        }
+    }
+
+    fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {
+        Ok(T::evaluation(&self.rate(policy, episodes)))
+    }
+
+    fn sentence(&self, found: &Evaluation) -> String {
+        self.task.sentence(found)
+    }
+
+    fn report(&self, policy: &Policy, wanted: &EvalOptions) -> Result<EvalReport> {
+        motions::refuse_matching(wanted)?;
+        let found = self.rate(policy, wanted.episodes);
+        let sentence = self.task.sentence(&T::evaluation(&found));
+        Ok(EvalReport {
+            text: format!("{sentence}\n{}", T::details(&found)),
+            json: serde_json::to_value(found)?,
+        })
+    }
+
+    #[cfg(feature = "report")]
+    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
+        figures::draw_curve(run, rows)
+    }
+
+    fn body(&self) -> Option<BodyEpisodes> {
+        let (task, library) = (self.task.clone(), self.library.clone());
+        let judged = move |seed| task.judged(&library, seed);
+        Some(BodyEpisodes::new(judged, Some(&self.library)))
+    }
+}
