@@ -2,6 +2,7 @@
 
 use super::Usage;
 use super::run::Run;
+use super::say::say;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use footwork::gpu::Gpu;
@@ -135,7 +136,7 @@ impl Render {
         if let Some((model, motion)) = run.task.motion(&policy, self.episode as u32) {
             if let Output::Png(path) = &output {
                 film_strip(&gpu, &model, &motion, [self.start, self.seconds], path)?;
-                println!("{}", path.display());
+                say!("{}", path.display());
                 return Ok(());
             }
             let mut film = BodyFilm::new(&gpu, &model, &motion, self.camera(), self.size);
@@ -194,7 +195,7 @@ impl Render {
                 }
             }
         }
-        println!("{}", output.path().display());
+        say!("{}", output.path().display());
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! `footwork train --watch`.
 
 use super::progress::Progress;
+use super::say::tell;
 use anyhow::Result;
 use footwork::env::EnvBatch;
 use footwork::gpu::{Device, Gpu};
@@ -60,7 +61,7 @@ pub fn watched(
             let envs = training.config.ppo.envs;
             let shown = window::watch(&gpu, database, task, envs, watch, over.clone());
             if let Err(error) = shown {
-                eprintln!("note: the training goes on unwatched: {error:#}");
+                tell!("note: the training goes on unwatched: {error:#}");
             }
         }
         running
