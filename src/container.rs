@@ -320,6 +320,9 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     })
 }
 
+/// How names of files begin that are being written.
+pub const UNFINISHED: &str = ".footwork-";
+
 /// Writes beside the place and renames.
 fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     // Renaming would put a plain file in the place of a device or a pipe.
@@ -333,7 +336,7 @@ fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
         .filter(|folder| !folder.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".footwork-");
+    builder.prefix(UNFINISHED);
     // A temporary file is private; this one will be as public as the umask makes files.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

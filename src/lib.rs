@@ -66,7 +66,7 @@
 //! is motion matching and physics on the CPU, without burn, wgpu or a command line. `train,cli` trains on
 //! the CPU. No real GPU has been measured yet: the shaders are tested on Mesa's lavapipe.
 
-#![warn(missing_docs)]
+#![warn(missing_docs, clippy::print_stdout, clippy::print_stderr)]
 #![allow(rustdoc::private_intra_doc_links)]
 
 #[cfg(all(feature = "report", feature = "train"))]

@@ -1,5 +1,8 @@
 //! The command line. Exit codes: 0 done, 1 failed, 2 asked for wrongly.
 
+// A print panics when its reader has gone away: see `cli::say`.
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod cli;
 
 use std::process::ExitCode;
@@ -9,7 +12,7 @@ fn main() -> ExitCode {
     match cli::run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            cli::say::tell!("error: {error:#}");
             ExitCode::from(cli::exit_code(&error))
         }
     }

@@ -2,6 +2,7 @@
 
 use super::Usage;
 use super::progress::Progress;
+use super::say::{say, show};
 use super::train::{Choices, Opened, on_interrupt};
 use anyhow::Result;
 use clap::Args;
@@ -74,10 +75,10 @@ impl Ablate {
         let outcomes = comparison.run(self.seeds, interrupted, &mut progress)?;
         drop(progress);
         match outcomes {
-            Some(outcomes) => print!("{}", comparison.summary(&outcomes)),
-            None => println!("go on with the same command"),
+            Some(outcomes) => show!("{}", comparison.summary(&outcomes)),
+            None => say!("go on with the same command"),
         }
-        println!("see {}", out.display());
+        say!("see {}", out.display());
         Ok(())
     }
 }

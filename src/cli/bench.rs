@@ -1,6 +1,7 @@
 //! `footwork bench`.
 
 use super::Usage;
+use super::say::{say, show};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use footwork::bench::{BenchPlan, Measurement, STAGES, run};
@@ -61,7 +62,7 @@ impl Bench {
         };
         let rows = run(&plan, &|what| line.set_message(what.to_string()))?;
         line.finish_and_clear();
-        print!("{}", shown(&rows));
+        show!("{}", shown(&rows));
         if let Some(file) = &self.json {
             let text = serde_json::to_string_pretty(&json!({ "rows": rows }))?;
             footwork::container::write_whole(file, text.as_bytes())
@@ -74,10 +75,10 @@ impl Bench {
                 "nothing to draw: there are curves of the stages search and training alone"
             );
             scaling::draw(file, &panels)?;
-            println!("see {}", file.display());
+            say!("see {}", file.display());
         }
         for line in advice(&rows) {
-            println!("{line}");
+            say!("{line}");
         }
         Ok(())
     }

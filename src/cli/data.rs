@@ -1,6 +1,7 @@
 //! `footwork data`.
 
 use super::Usage;
+use super::say::{say, show, tell};
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand, ValueEnum};
 use footwork::matching::MotionMatcher;
@@ -126,7 +127,7 @@ impl Import {
         };
         let (database, notes) = data::from_bvh(&self.path, &options, self.weights.into())?;
         for note in notes {
-            eprintln!("note: {note}");
+            tell!("note: {note}");
         }
         save(database, &self.out)
     }
@@ -174,7 +175,7 @@ fn save(database: Database, path: &Path) -> Result<()> {
         "the database was written, the index of the search beside it was not, and every training will build it anew",
     )?;
     let MotionMatcher { database, index } = matcher;
-    println!(
+    say!(
         "{}: {} clips, {:.1} minutes, {} candidates, fingerprint {:08x}; beside it the search's index, {:.1} MB",
         path.display(),
         database.clips.len(),
@@ -190,10 +191,10 @@ impl Info {
     fn run(self) -> Result<()> {
         let (database, notes) = data::load(self.path.as_deref(), Weights::PAPER)?;
         for note in notes {
-            eprintln!("note: {note}");
+            tell!("note: {note}");
         }
-        print!("{}", clips(&database));
-        println!(
+        show!("{}", clips(&database));
+        say!(
             "\n{} clips, {:.1} minutes, {} frames at {RATE} Hz, {} candidates, fingerprint {:08x}\n",
             database.clips.len(),
             database.minutes(),
@@ -202,11 +203,11 @@ impl Info {
             database.fingerprint,
         );
         let motion = database.ground_motion();
-        print!("{}", coverage_table(&motion));
+        show!("{}", coverage_table(&motion));
         #[cfg(feature = "report")]
         if let Some(plot) = &self.plot {
             draw_coverage(plot, &motion)?;
-            println!("\ncoverage drawn in {}", plot.display());
+            say!("\ncoverage drawn in {}", plot.display());
         }
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use super::Usage;
 use super::run::Run;
+use super::say::{say, show};
 use anyhow::Result;
 use clap::Args;
 use footwork::train::evaluation::EvalOptions;
@@ -59,8 +60,8 @@ impl Eval {
         };
         let report = run.task.report(&checkpoint.policy, &wanted)?;
         match self.json {
-            true => println!("{}", report.json),
-            false => print!(
+            true => say!("{}", report.json),
+            false => show!(
                 "{} at {} steps, {} episodes\n{}",
                 run.path.display(),
                 checkpoint.header.steps,

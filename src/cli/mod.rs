@@ -11,6 +11,7 @@ mod progress;
 #[cfg(feature = "viewer")]
 mod render;
 mod run;
+pub mod say;
 mod sim;
 mod train;
 mod usage;
@@ -57,18 +58,25 @@ enum Command {
 }
 
 pub fn run() -> Result<()> {
-    match Cli::parse().command {
-        Command::Train(train) => train.run(),
-        Command::Ablate(ablate) => ablate.run(),
-        Command::Eval(eval) => eval.run(),
-        #[cfg(feature = "viewer")]
-        Command::Play(play) => play.run(),
-        #[cfg(feature = "viewer")]
-        Command::Render(render) => render.run(),
-        Command::Sim(sim) => sim.run(),
-        #[cfg(feature = "report")]
-        Command::Bench(bench) => bench.run(),
-        Command::Data(data) => data.run(),
+    Cli::parse().command.run()?;
+    say::printed()
+}
+
+impl Command {
+    fn run(self) -> Result<()> {
+        match self {
+            Command::Train(train) => train.run(),
+            Command::Ablate(ablate) => ablate.run(),
+            Command::Eval(eval) => eval.run(),
+            #[cfg(feature = "viewer")]
+            Command::Play(play) => play.run(),
+            #[cfg(feature = "viewer")]
+            Command::Render(render) => render.run(),
+            Command::Sim(sim) => sim.run(),
+            #[cfg(feature = "report")]
+            Command::Bench(bench) => bench.run(),
+            Command::Data(data) => data.run(),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! `footwork play`.
 
 use super::run::Run;
+use super::say::tell;
 use anyhow::Result;
 use clap::Args;
 use footwork::env::locomotion::{LocomotionTask, Plane};
@@ -55,7 +56,7 @@ impl Play {
     fn motion(&self) -> Result<()> {
         let (matcher, notes) = data::load_matcher(self.data.as_deref(), Weights::PAPER)?;
         for note in notes {
-            eprintln!("note: {note}");
+            tell!("note: {note}");
         }
         // Steered by hand, the character never arrives.
         let task = LocomotionTask::Plane(Plane {

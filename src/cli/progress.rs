@@ -1,5 +1,6 @@
 //! A live line on a terminal, a plain line now and then otherwise.
 
+use super::say::tell;
 use footwork::train::config::Config;
 use footwork::train::metrics::UpdateMetrics;
 use footwork::train::observer::Observer;
@@ -38,6 +39,13 @@ impl Progress {
 }
 
 impl Observer for Progress {
+    fn noted(&mut self, note: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| tell!("{note}")),
+            None => tell!("{note}"),
+        }
+    }
+
     fn updated(&mut self, row: &UpdateMetrics, recent: RecentMeans) {
         let rate = row.steps as f64 / row.wall_s.max(1e-9);
         let by_steps = self.steps.saturating_sub(row.steps) as f64 / rate.max(1e-9);
@@ -64,7 +72,7 @@ impl Observer for Progress {
             }
             None if self.spoken.is_none_or(|at| at.elapsed() >= PLAIN) => {
                 self.spoken = Some(Instant::now());
-                eprintln!("{line}");
+                tell!("{line}");
             }
             None => {}
         }

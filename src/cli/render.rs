@@ -2,6 +2,7 @@
 
 use super::Usage;
 use super::run::Run;
+use super::say::say;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use footwork::env::humanoid::task::play;
@@ -140,7 +141,7 @@ impl Render {
             let motion = play::record(&mut envs, &mean, &run.config.task.name);
             if let Output::Png(path) = &output {
                 film_strip(&gpu, &model, &motion, [self.start, self.seconds], path)?;
-                println!("{}", path.display());
+                say!("{}", path.display());
                 return Ok(());
             }
             let mut film = BodyFilm::new(&gpu, &model, &motion, self.camera(), self.size);
@@ -199,7 +200,7 @@ impl Render {
                 }
             }
         }
-        println!("{}", output.path().display());
+        say!("{}", output.path().display());
         Ok(())
     }
 

@@ -31,14 +31,7 @@ impl Run {
         let mut config = config_of(&folder)?;
         let entry = find(&config.task.name)?;
         let spec = entry.check(&config)?;
-        if let Some(moved) = moved {
-            config.data = Some(moved.to_path_buf());
-        } else if let Some(gone) = config.data.as_deref().filter(|path| !path.exists()) {
-            anyhow::bail!(
-                "the motion that the run was trained with is gone: it was {}; say where it is now with --data",
-                gone.display()
-            );
-        }
+        find_data(&mut config, moved)?;
         // What is to be said of the data was said when the training started.
         let task = (entry.load)(&config)?.task;
         Ok(Run {
@@ -70,8 +63,22 @@ impl Run {
     }
 }
 
+/// Makes sure that a run's motion is where its configuration says, or at `moved`.
+pub fn find_data(config: &mut Config, moved: Option<&Path>) -> Result<()> {
+    if let Some(moved) = moved {
+        // A run must find its data again from any folder.
+        config.data = Some(std::path::absolute(moved)?);
+    } else if let Some(gone) = config.data.as_deref().filter(|path| !path.exists()) {
+        anyhow::bail!(
+            "the motion that the run was trained with is gone: it was {}; say where it is now with --data",
+            gone.display()
+        );
+    }
+    Ok(())
+}
+
 /// The run's folder, and the checkpoint: the given one, or the last of a given folder.
-fn locate(run: &Path) -> Result<(RunDir, PathBuf)> {
+pub fn locate(run: &Path) -> Result<(RunDir, PathBuf)> {
     if run.is_file() {
         let whole = std::path::absolute(run)?;
         let folder = whole.ancestors().nth(2).map(RunDir::open);

@@ -1,6 +1,7 @@
 //! `footwork sim`.
 
 use super::Usage;
+use super::say::{say, show, tell};
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use footwork::env::humanoid::batch::{self, SimulatorBatchConfig};
@@ -139,8 +140,8 @@ impl Sim {
         let device = Device::open(self.device)?;
         let figures = self.measure(model, &device)?;
         match self.json {
-            true => println!("{}", serde_json::to_string_pretty(&figures)?),
-            false => print!("{}", shown(&figures)),
+            true => say!("{}", serde_json::to_string_pretty(&figures)?),
+            false => show!("{}", shown(&figures)),
         }
         Ok(())
     }
@@ -154,12 +155,12 @@ impl Sim {
         let model = Arc::new(self.load()?);
         let library = MotionLibrary::load(&[clip], &ImportOptions::default(), &model)?;
         for note in &library.notes {
-            eprintln!("note: {note}");
+            tell!("note: {note}");
         }
         let gpu = footwork::gpu::Gpu::drawing()?;
         for motion in library.motions() {
             for file in strips(&gpu, &model, motion, folder)? {
-                println!("{}", file.display());
+                say!("{}", file.display());
             }
         }
         Ok(())

@@ -2,6 +2,8 @@
 
 use super::Usage;
 use super::progress::Progress;
+use super::run::{find_data, locate};
+use super::say::{say, tell};
 #[cfg(feature = "viewer")]
 use super::watch::watched;
 use anyhow::Result;
@@ -12,11 +14,12 @@ use footwork::gpu::{Choice, Device};
 use footwork::rl::rollout::check_fits;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Preset};
+use footwork::train::metrics;
 use footwork::train::run_dir::{RunDir, Summary};
 use footwork::train::task::{Task, TaskEntry};
 use footwork::train::tasks::{REGISTRY, config_of, find};
 use footwork::train::trainer::{Training, train};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 #[derive(Args)]
@@ -42,8 +45,8 @@ pub struct Train {
     /// The run's folder [default: runs/TASK-N]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Go on with a run as if it had never stopped
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["data", "device", "envs", "seed", "preset", "config", "set", "out", "from"])]
+    /// Go on with a run as if it had never stopped: its folder, or one of its checkpoints
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["device", "envs", "seed", "preset", "config", "set", "out", "from"])]
     resume: Option<PathBuf>,
     /// Do not reward requests of positions outside obstacles: --set task.hit_reward=0
     #[arg(long, conflicts_with = "resume", help_heading = "Among obstacles")]
@@ -127,24 +130,24 @@ impl Train {
     pub fn run(self) -> Result<()> {
         let entry = find(&self.task)?;
         let interrupted = on_interrupt()?;
-        let resumed = self.resume.as_deref().map(RunDir::open).transpose()?;
+        let resumed = self.resume.as_deref().map(claim).transpose()?;
         let mut config = match &resumed {
-            Some(run) => same_task(run, entry)?,
+            Some((run, _)) => self.same(run, entry)?,
             None => self.fresh(entry)?,
         };
         self.limit(&mut config);
         let opened = Opened::new(entry, &mut config)?;
         let start = self.choices.start()?;
         let from = match &resumed {
-            Some(run) => Some(go_on(run, &config, &opened)?),
+            Some((run, path)) => Some(go_on(run, path, &config, &opened)?),
             None => None,
         };
         let run = match resumed {
-            Some(run) => run,
+            Some((run, _)) => run,
             None => RunDir::create(self.out.as_deref(), entry.name)?,
         };
         let (task, device) = (&*opened.task, &opened.device);
-        eprintln!(
+        tell!(
             "training `{}` on {}: {} environments, {}; run folder {}",
             entry.name,
             device.name(),
@@ -189,6 +192,16 @@ impl Train {
         }
         if let Some(bonus) = self.success_bonus {
             config.set("task.success_bonus", bonus.into())?;
+        }
+        Ok(config)
+    }
+
+    /// The configuration of a run that goes on, whose data may have moved.
+    fn same(&self, run: &RunDir, entry: &TaskEntry) -> Result<Config> {
+        let mut config = same_task(run, entry)?;
+        find_data(&mut config, self.choices.data.as_deref())?;
+        if let Some(folder) = &self.choices.data_folder {
+            config.data_folder = Some(std::path::absolute(folder)?);
         }
         Ok(config)
     }
@@ -265,7 +278,7 @@ impl Opened {
         config.device = device.choice();
         let loaded = (entry.load)(config)?;
         for note in loaded.notes {
-            eprintln!("note: {note}");
+            tell!("note: {note}");
         }
         config.task.settings = loaded.task.settings();
         Ok(Opened {
@@ -290,14 +303,28 @@ fn same_task(run: &RunDir, entry: &TaskEntry) -> Result<Config> {
     Ok(config)
 }
 
+/// A run that nobody else writes, and the checkpoint that it goes on from.
+fn claim(run: &Path) -> Result<(RunDir, PathBuf)> {
+    let (run, checkpoint) = locate(run)?;
+    Ok((run.claimed()?, checkpoint))
+}
+
 /// The checkpoint that a run goes on from.
-fn go_on(run: &RunDir, config: &Config, opened: &Opened) -> Result<Checkpoint> {
+fn go_on(run: &RunDir, path: &Path, config: &Config, opened: &Opened) -> Result<Checkpoint> {
     let (name, fingerprint) = (&config.task.name, opened.task.fingerprint());
-    let checkpoint = Checkpoint::load_for(&run.last()?, name, &opened.spec, fingerprint)?;
+    let checkpoint = Checkpoint::load_for(path, name, &opened.spec, fingerprint)?;
     checkpoint.check_same(config)?;
     let done = checkpoint.header.steps;
     if done >= config.steps {
         let why = format!("the run has done {done} steps: give a larger --steps");
+        return Err(Usage(why).into());
+    }
+    let known = metrics::read(&run.metrics_path(), done)?;
+    let wall_s = known.rows.last().map_or(0.0, |row| row.wall_s);
+    if config.max_time_s.is_some_and(|max| wall_s >= max) {
+        let why = format!(
+            "the run has trained for {wall_s:.1} s, which is all that --max-time gave it: give a larger --max-time"
+        );
         return Err(Usage(why).into());
     }
     Ok(checkpoint)
@@ -306,7 +333,7 @@ fn go_on(run: &RunDir, config: &Config, opened: &Opened) -> Result<Checkpoint> {
 /// Says how a training ended.
 fn tell(training: Training, summary: &Summary) {
     let (name, path) = (&training.config.task.name, training.run.path().display());
-    println!(
+    say!(
         "{} steps in {:.1} s ({:.0} steps/s), stopped by {}: {}",
         summary.steps,
         summary.wall_s,
@@ -319,9 +346,9 @@ fn tell(training: Training, summary: &Summary) {
     } else {
         String::new()
     };
-    println!("{figures}evaluate with `footwork eval {path}`");
+    say!("{figures}evaluate with `footwork eval {path}`");
     if summary.stopped_by == "interrupt" {
-        println!("go on with `footwork train {name} --resume {path}`");
+        say!("go on with `footwork train {name} --resume {path}`");
     }
 }
 
@@ -332,7 +359,7 @@ pub fn on_interrupt() -> Result<&'static AtomicBool> {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        eprintln!("\nstopping after this update; Ctrl-C again to stop at once");
+        tell!("\nstopping after this update; Ctrl-C again to stop at once");
     })?;
     Ok(&INTERRUPTED)
 }

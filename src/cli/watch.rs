@@ -1,6 +1,7 @@
 //! `footwork train --watch`.
 
 use super::progress::Progress;
+use super::say::tell;
 use anyhow::Result;
 use footwork::env::EnvBatch;
 use footwork::gpu::{Device, Gpu};
@@ -61,7 +62,7 @@ pub fn watched(
             envs: training.config.ppo.envs,
         });
         if let Err(error) = window::watch(&gpu, motion, watch, over.clone()) {
-            eprintln!("note: the training goes on unwatched: {error:#}");
+            tell!("note: the training goes on unwatched: {error:#}");
         }
         running
             .join()

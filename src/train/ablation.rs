@@ -69,7 +69,8 @@ impl Comparison<'_> {
         for seed in 1..=seeds {
             for variant in variants {
                 let path = self.out.join(format!("{}-{seed}", variant.name));
-                eprintln!("{} of {}", path.display(), variants.len() * seeds as usize);
+                let all = variants.len() * seeds as usize;
+                observer.noted(&format!("{} of {all}", path.display()));
                 match self.outcome(variant, seed, &path, interrupted, observer)? {
                     Some(outcome) => outcomes.push(outcome),
                     None => return Ok(None),
@@ -102,7 +103,7 @@ impl Comparison<'_> {
         let task = self.task.with_choices(&config)?;
         let begun = path.join("config.toml").exists();
         let run = match begun {
-            true => RunDir::open(path)?,
+            true => RunDir::open(path)?.claimed()?,
             false => RunDir::create(Some(path), self.entry.name)?,
         };
         let from = match begun {
@@ -127,7 +128,7 @@ impl Comparison<'_> {
         Ok(Some(Outcome {
             variant: variant.name,
             seed,
-            rows: metrics::read(&run.file("metrics.jsonl"), config.steps + config.batch())?,
+            rows: metrics::read(&run.metrics_path(), config.steps + config.batch())?.rows,
             evaluation: task.evaluate(&policy, EPISODES)?,
         }))
     }

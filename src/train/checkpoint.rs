@@ -32,8 +32,6 @@ pub struct Header {
     pub config: String,
     /// Environment steps so far.
     pub steps: u64,
-    /// Seconds of training so far.
-    pub wall_s: f64,
 }
 
 /// A run at one moment.

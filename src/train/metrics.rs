@@ -85,20 +85,39 @@ impl UpdateMetrics {
     }
 }
 
-/// The rows of a `metrics.jsonl` up to a number of steps. Lines that a crash cut short end the
-/// reading.
-pub fn read(path: &Path, up_to: u64) -> Result<Vec<UpdateMetrics>> {
+/// What a `metrics.jsonl` holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KnownMetrics {
+    /// The updates up to a number of steps, in order.
+    pub rows: Vec<UpdateMetrics>,
+    /// Numbers of the lines that are none, from 1.
+    pub damaged: Vec<usize>,
+}
+
+/// Reads a `metrics.jsonl` up to a number of steps. A line that is no update costs that line.
+///
+/// # Errors
+/// It cannot be read.
+pub fn read(path: &Path, up_to: u64) -> Result<KnownMetrics> {
+    let mut known = KnownMetrics::default();
     if !path.exists() {
-        return Ok(Vec::new());
+        return Ok(known);
     }
-    let text = std::fs::read_to_string(path).with_context(|| {
+    let bytes = std::fs::read(path).with_context(|| {
         format!(
             "cannot read {}; move it away to go on without it",
             path.display()
         )
     })?;
-    let rows = text
-        .lines()
-        .map_while(|line| serde_json::from_str::<UpdateMetrics>(line).ok());
-    Ok(rows.take_while(|row| row.steps <= up_to).collect())
+    let text = String::from_utf8_lossy(&bytes);
+    for (number, line) in text.lines().enumerate() {
+        match serde_json::from_str::<UpdateMetrics>(line) {
+            Ok(row) if row.steps <= up_to => known.rows.push(row),
+            Ok(_) => {}
+            // Nothing is lost with it.
+            Err(_) if line.trim().is_empty() => {}
+            Err(_) => known.damaged.push(number + 1),
+        }
+    }
+    Ok(known)
 }

@@ -1,20 +1,24 @@
 //! Writes the metrics of a run: `metrics.jsonl`, and TensorBoard's events.
 
 use super::metrics::UpdateMetrics;
+use super::run_dir::RunDir;
 #[cfg(feature = "report")]
 use super::tensorboard::TensorBoard;
 use crate::container::write_whole;
 use anyhow::{Context, Result};
 use std::fs::File;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Appends to a run's metrics and events.
 pub struct MetricsWriter {
     lines: File,
     path: PathBuf,
+    /// Until they cannot be written.
     #[cfg(feature = "report")]
-    events: TensorBoard,
+    events: Option<TensorBoard>,
+    /// What the user should know.
+    note: Option<String>,
 }
 
 impl MetricsWriter {
@@ -22,8 +26,8 @@ impl MetricsWriter {
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn open(folder: &Path, known: &[UpdateMetrics]) -> Result<Self> {
-        let path = folder.join("metrics.jsonl");
+    pub fn open(run: &RunDir, known: &[UpdateMetrics]) -> Result<Self> {
+        let path = run.metrics_path();
         let mut text = String::new();
         for row in known {
             text += &serde_json::to_string(row)?;
@@ -32,12 +36,23 @@ impl MetricsWriter {
         write_whole(&path, text.as_bytes())?;
         let lines = File::options().append(true).open(&path);
         let lines = lines.with_context(|| format!("cannot write {}", path.display()))?;
+        #[cfg(feature = "report")]
+        let events = TensorBoard::open(run.path(), known);
         Ok(MetricsWriter {
             lines,
             path,
             #[cfg(feature = "report")]
-            events: TensorBoard::open(folder, known)?,
+            note: events.as_ref().err().map(unwritten),
+            #[cfg(not(feature = "report"))]
+            note: None,
+            #[cfg(feature = "report")]
+            events: events.ok(),
         })
+    }
+
+    /// What the user should know and has not been told.
+    pub fn take_note(&mut self) -> Option<String> {
+        self.note.take()
     }
 
     /// Writes an update.
@@ -51,7 +66,16 @@ impl MetricsWriter {
             .write_all(line.as_bytes())
             .with_context(|| format!("cannot write {}", self.path.display()))?;
         #[cfg(feature = "report")]
-        self.events.write(row)?;
+        if let Some(Err(error)) = self.events.as_mut().map(|events| events.write(row)) {
+            self.note = Some(unwritten(&error));
+            self.events = None;
+        }
         Ok(())
     }
+}
+
+/// TensorBoard's curves are not worth a training.
+#[cfg(feature = "report")]
+fn unwritten(error: &std::io::Error) -> String {
+    format!("note: {error}; the training goes on without events for TensorBoard")
 }

@@ -15,6 +15,9 @@ pub trait Observer {
         Ok(())
     }
 
+    /// Something happened that the user should know of and that stops nothing.
+    fn noted(&mut self, _note: &str) {}
+
     /// An update is over; `recent` are means over the latest episodes.
     fn updated(&mut self, _row: &UpdateMetrics, _recent: RecentMeans) {}
 }

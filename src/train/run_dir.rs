@@ -2,10 +2,13 @@
 
 use super::config::Config;
 use super::evaluation::Evaluation;
-use crate::container::write_whole;
+use crate::container::{UNFINISHED, write_whole};
 use anyhow::{Context, Result, bail};
 use serde::Serialize;
+use std::fs::{File, TryLockError};
+use std::io::{self, ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// How a training ended, written as `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -39,38 +42,96 @@ pub struct Summary {
 /// A run's folder: `config.toml`, `metrics.jsonl`, TensorBoard events, `checkpoints/`, pictures,
 /// `summary.json`.
 #[derive(Clone, Debug)]
-pub struct RunDir(PathBuf);
+pub struct RunDir {
+    path: PathBuf,
+    /// Held while the run is written.
+    lock: Option<Arc<File>>,
+}
+
+/// Locked by who writes the run, whose process it names.
+const LOCK: &str = "run.lock";
 
 impl RunDir {
-    /// Makes the folder of a new run: the given one, or the next free `runs/TASK-N`.
+    /// Makes and claims the folder of a new run: the given one, or the next free `runs/TASK-N`.
+    ///
+    /// # Errors
+    /// It cannot be made, or holds a run.
     pub fn create(given: Option<&Path>, task: &str) -> Result<Self> {
         let path = match given {
             Some(path) => path.to_path_buf(),
-            None => {
-                let free = (1..)
-                    .map(|n| Path::new("runs").join(format!("{task}-{n}")))
-                    .find(|p| !p.exists());
-                free.context("no free name under runs/")?
-            }
+            None => free_folder(task)?,
         };
-        if path.join("config.toml").exists() {
+        let run = RunDir { path, lock: None };
+        std::fs::create_dir_all(run.checkpoints())
+            .inspect_err(|_| run.discard())
+            .with_context(|| format!("cannot make the run folder {}", run.path.display()))?;
+        let run = run.claimed()?;
+        if run.config_path().exists() {
             bail!(
                 "{} already holds a run: go on with `--resume {0}`, or choose another --out",
-                path.display()
+                run.path.display()
             );
         }
-        let run = RunDir(path);
-        std::fs::create_dir_all(run.checkpoints())
-            .inspect_err(|_| run.remove_empty())
-            .with_context(|| format!("cannot make the run folder {}", run.0.display()))?;
         Ok(run)
     }
 
-    /// Takes the folder away again, if nothing could be written to it.
-    pub fn remove_empty(&self) {
-        // Folders that hold something stay; the error that led here is the one to tell.
+    /// Claims the run for writing until the value is dropped, and clears what a killed process left half
+    /// written.
+    ///
+    /// # Errors
+    /// Another process writes it.
+    pub fn claimed(mut self) -> Result<Self> {
+        let path = self.file(LOCK);
+        let open = File::options()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(&path);
+        let mut file = open.with_context(|| format!("cannot write {}", path.display()))?;
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => {
+                let mut holder = String::new();
+                // Who it is would be good to know; that there is somebody is enough.
+                let _ = file.read_to_string(&mut holder);
+                bail!(
+                    "{} is being written by process {}: wait for its end or stop it, or choose another --out",
+                    self.path.display(),
+                    holder.trim()
+                );
+            }
+            // Where the file system knows no locks, there are none.
+            Ok(()) | Err(TryLockError::Error(_)) => {}
+        }
+        // Who holds it is for people; the lock is what counts.
+        let _ = file
+            .set_len(0)
+            .and_then(|()| file.rewind())
+            .and_then(|()| writeln!(file, "{}", std::process::id()));
+        self.lock = Some(Arc::new(file));
+        for folder in [&self.path, &self.checkpoints()] {
+            clear_unfinished(folder);
+        }
+        Ok(self)
+    }
+
+    /// Takes the folder away again, if no run came of it; what else it holds stays.
+    pub fn discard(&self) {
+        // The error that led here is the one to tell.
+        if !self.config_path().exists() {
+            let begun = [
+                self.metrics_path(),
+                self.file(LOCK),
+                self.checkpoint("last"),
+            ];
+            for file in begun {
+                let _ = std::fs::remove_file(file);
+            }
+            #[cfg(feature = "report")]
+            let _ = std::fs::remove_file(self.file(crate::report::events::FILE_NAME));
+        }
         let _ = std::fs::remove_dir(self.checkpoints());
-        let _ = std::fs::remove_dir(&self.0);
+        let _ = std::fs::remove_dir(&self.path);
     }
 
     /// An existing run.
@@ -81,7 +142,10 @@ impl RunDir {
                 path.display()
             );
         }
-        let run = RunDir(path.to_path_buf());
+        let run = RunDir {
+            path: path.to_path_buf(),
+            lock: None,
+        };
         if !run.config_path().exists() {
             bail!(
                 "{} holds no run: its config.toml is missing",
@@ -93,17 +157,22 @@ impl RunDir {
 
     /// The folder.
     pub fn path(&self) -> &Path {
-        &self.0
+        &self.path
     }
 
     /// Where a file of the run is.
     pub fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
+        self.path.join(name)
     }
 
     /// Where its configuration is.
     pub fn config_path(&self) -> PathBuf {
         self.file("config.toml")
+    }
+
+    /// Where its updates are, one a line.
+    pub fn metrics_path(&self) -> PathBuf {
+        self.file("metrics.jsonl")
     }
 
     fn checkpoints(&self) -> PathBuf {
@@ -123,8 +192,8 @@ impl RunDir {
         let last = self.checkpoint("last");
         if !last.exists() {
             bail!(
-                "{} is missing: the run was stopped before it was saved; start it again with another --out, \
-                 or name one of the other checkpoints there, if there is one",
+                "{} is missing: name one of the other checkpoints there, if there is one, or start the run again \
+                 with another --out",
                 last.display()
             );
         }
@@ -172,5 +241,39 @@ impl RunDir {
     pub fn write_summary(&self, summary: &Summary) -> Result<()> {
         let text = serde_json::to_string_pretty(summary)? + "\n";
         Ok(write_whole(&self.file("summary.json"), text.as_bytes())?)
+    }
+}
+
+/// Makes the next free `runs/TASK-N`: of two processes that ask at once, each gets its own.
+fn free_folder(task: &str) -> Result<PathBuf> {
+    let runs = Path::new("runs");
+    let made = |path: &Path| -> io::Result<bool> {
+        std::fs::create_dir_all(runs)?;
+        match std::fs::create_dir(path) {
+            Ok(()) => Ok(true),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => Ok(false),
+            Err(error) => Err(error),
+        }
+    };
+    for n in 1u64.. {
+        let path = runs.join(format!("{task}-{n}"));
+        let made = made(&path);
+        if made.with_context(|| format!("cannot make the run folder {}", path.display()))? {
+            return Ok(path);
+        }
+    }
+    bail!("no free name under {}", runs.display())
+}
+
+/// Removes files that were being written when their process died. Nobody else writes here.
+fn clear_unfinished(folder: &Path) {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return;
+    };
+    for entry in entries.filter_map(Result::ok) {
+        if entry.file_name().to_string_lossy().starts_with(UNFINISHED) {
+            // One that stays costs space, no more.
+            let _ = std::fs::remove_file(entry.path());
+        }
     }
 }

@@ -15,7 +15,7 @@ use crate::rl::Algorithm;
 use anyhow::{Context, Result};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Episodes of an evaluation.
 pub const EPISODES: usize = 1000;
@@ -23,6 +23,8 @@ pub const EPISODES: usize = 1000;
 const GLANCE: usize = 100;
 /// A glance this far below the goal may still be chance: two standard errors at 98 %.
 const DOUBT: f64 = 0.03;
+/// A run that is killed loses at most so much.
+const SAVE_EVERY: Duration = Duration::from_secs(30);
 /// Training success this far below the goal is worth a glance.
 const NEAR: f64 = 0.15;
 
@@ -56,12 +58,12 @@ pub fn train(
 ) -> Result<Summary> {
     // On a thread of the pool: another would fall asleep and be woken again at every parallel part.
     rayon::scope(|_| {
-        let opened = Loop::open(training, from);
-        let mut state = opened.inspect_err(|_| training.run.remove_empty())?;
+        let opened = Loop::open(training, from, observer);
+        let mut state = opened.inspect_err(|_| training.run.discard())?;
         observer.opened(&mut state.envs)?;
         let stopped_by = state.advance(interrupted, observer);
         let outcome = stopped_by.and_then(|by| {
-            state.save(&training.run.checkpoint("last"))?;
+            state.save_last()?;
             Ok(by)
         });
         state.conclude(outcome)
@@ -81,10 +83,16 @@ struct Loop<'a> {
     /// Seconds before this process, and its start.
     earlier_s: f64,
     start: Instant,
+    /// When `last` was written.
+    saved: Instant,
 }
 
 impl<'a> Loop<'a> {
-    fn open(training: Training<'a>, from: Option<Checkpoint>) -> Result<Self> {
+    fn open(
+        training: Training<'a>,
+        from: Option<Checkpoint>,
+        observer: &mut dyn Observer,
+    ) -> Result<Self> {
         let Training {
             config,
             task,
@@ -96,26 +104,42 @@ impl<'a> Loop<'a> {
         let mut learner = task.learner(config, &envs, device)?;
         let (mut steps, mut earlier_s, mut state) = (0, 0.0, TrainerState::default());
         let mut rows = Vec::new();
-        if let (Some(start), None) = (start, &from) {
+        let fresh = from.is_none();
+        if let (Some(start), true) = (start, fresh) {
             start.start(&mut *learner)?;
         }
         if let Some(checkpoint) = from {
-            (steps, earlier_s) = (checkpoint.header.steps, checkpoint.header.wall_s);
+            steps = checkpoint.header.steps;
             state = checkpoint.restore(&run.checkpoint("last"), &mut *learner, &mut envs)?;
-            rows = metrics::read(&run.file("metrics.jsonl"), steps)?;
+            let path = run.metrics_path();
+            let known = metrics::read(&path, steps)?;
+            for line in known.damaged {
+                observer.noted(&format!(
+                    "note: {}, line {line}, was no update: left out",
+                    path.display()
+                ));
+            }
+            earlier_s = known.rows.last().map_or(0.0, |row| row.wall_s);
+            rows = known.rows;
         }
-        run.write_config(config)?;
-        Ok(Loop {
+        let mut opened = Loop {
             training,
             envs,
             learner,
             state,
-            writer: MetricsWriter::open(run.path(), &rows)?,
+            writer: MetricsWriter::open(run, &rows)?,
             rows,
             steps,
             earlier_s,
             start: Instant::now(),
-        })
+            saved: Instant::now(),
+        };
+        // From here on a run that is killed can go on: there is no run without a checkpoint.
+        if fresh {
+            opened.save_last()?;
+        }
+        run.write_config(config)?;
+        Ok(opened)
     }
 
     fn wall_s(&self) -> f64 {
@@ -145,6 +169,9 @@ impl<'a> Loop<'a> {
             let reached =
                 self.crossed(config.evaluate_every, before) && self.succeeded(&mut row)?;
             self.writer.write(&row)?;
+            if let Some(note) = self.writer.take_note() {
+                observer.noted(&note);
+            }
             self.rows.push(row);
             self.keep(before)?;
             if reached {
@@ -224,15 +251,26 @@ impl<'a> Loop<'a> {
             self.save(&run.checkpoint("best"))?;
         }
         let passed = |steps: &u64| before < *steps && *steps <= self.steps;
+        let mut due = self.saved.elapsed() >= SAVE_EVERY;
         for &steps in task.milestones().iter().filter(|steps| passed(steps)) {
             self.save(&run.checkpoint_at(steps))?;
+            due = true;
         }
         if self.crossed(config.checkpoint_every, before) {
             let every = config.checkpoint_every;
             self.save(&run.checkpoint_at(self.steps / every * every))?;
-            self.save(&run.checkpoint("last"))?;
+            due = true;
         }
-        Ok(())
+        match due || self.rows.len() == 1 {
+            true => self.save_last(),
+            false => Ok(()),
+        }
+    }
+
+    /// Saves where a run that is stopped goes on.
+    fn save_last(&mut self) -> Result<()> {
+        self.saved = Instant::now();
+        self.save(&self.training.run.checkpoint("last"))
     }
 
     fn save(&self, path: &Path) -> Result<()> {
@@ -244,7 +282,6 @@ impl<'a> Loop<'a> {
             fingerprint: task.fingerprint(),
             config: config.to_toml(),
             steps: self.steps,
-            wall_s: self.wall_s(),
         };
         let checkpoint = Checkpoint::take(header, &*self.learner, &self.envs, &self.state)?;
         Ok(checkpoint.save(path)?)

@@ -176,6 +176,11 @@ impl BodyViewer {
         ui.strong(format!("Episode {}", now.episode));
         ui.label(format!("{:.2} s", now.steps as f32 * DT));
         ui.label(format!("reward {:.2}", now.reward));
+        if let [own, target] = &self.context.model().trees[..] {
+            let centres = self.centres();
+            let far = centres[target.bodies.start].distance(centres[own.bodies.start]);
+            ui.label(format!("target {far:.1} m away"));
+        }
         if let (Some(discriminator), Some(style)) = (&self.policy.discriminator, now.style) {
             let bar = egui::ProgressBar::new(discriminator.share(style).clamp(0.0, 1.0));
             ui.add(bar.text(format!("style reward {style:.2}")))

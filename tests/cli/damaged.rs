@@ -192,7 +192,7 @@ fn checkpoints_that_are_none_are_refused() {
     place.refused(
         "eval run",
         1,
-        &["last.ckpt is missing", "before it was saved"],
+        &["last.ckpt is missing", "name one of the other checkpoints"],
     );
     place.refused("train plane --resume run", 1, &["last.ckpt is missing"]);
 }
@@ -229,14 +229,34 @@ fn a_run_whose_data_or_configuration_changed_is_not_resumed() {
     place.refused(resume, 1, &["was trained with other data", "last.ckpt"]);
     place.refused("eval run", 1, &["was trained with other data"]);
     std::fs::remove_file(place.path("small.footwork")).unwrap();
-    place.refused(resume, 1, &["cannot read", "small.footwork"]);
+    place.refused(resume, 1, &["is gone: it was", "small.footwork", "--data"]);
 }
 
+/// A line of the metrics that is none costs that line.
 #[test]
-fn other_files_of_a_run_that_are_damaged_are_named() {
+fn damaged_metrics_cost_no_more_than_their_line() {
     let place = Place::with_run();
-    let path = place.path("run/metrics.jsonl");
-    std::fs::write(&path, b"\xff\xfe nonsense").unwrap();
-    let resume = "train plane --resume run --steps 10240";
-    place.refused(resume, 1, &["metrics.jsonl; move it away"]);
+    let good = place.read("run/metrics.jsonl");
+    let lines: Vec<&str> = good.lines().collect();
+    let whole = lines.len();
+    for (line, bad) in [
+        (2, lines[2][..60].as_bytes().to_vec()),
+        (3, vec![0; 80]),
+        (4, b"\xff\xfe nonsense".to_vec()),
+        (5, [lines[5], lines[6]].concat().into_bytes()),
+    ] {
+        let mut damaged: Vec<Vec<u8>> = lines.iter().map(|line| line.as_bytes().to_vec()).collect();
+        damaged[line] = bad;
+        place.write("run/metrics.jsonl", damaged.join(&b'\n'));
+        let before = std::fs::read(place.path(LAST)).unwrap();
+        let told = place.done("train plane --resume run --steps 10240");
+        assert!(
+            told.err
+                .contains(&format!("metrics.jsonl, line {},", line + 1)),
+            "{told:?}"
+        );
+        assert_eq!(crate::rows(&place.path("run")).len(), whole - 1 + 2);
+        place.write("run/checkpoints/last.ckpt", before);
+        place.write("run/metrics.jsonl", &good);
+    }
 }

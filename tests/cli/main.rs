@@ -1,5 +1,7 @@
 //! The program as its user meets it: options, messages, exit codes, files.
 
+#[cfg(target_os = "linux")]
+mod accidents;
 mod bench;
 #[cfg(unix)]
 mod damaged;

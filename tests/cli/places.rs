@@ -58,7 +58,7 @@ fn a_full_disk_leaves_no_part_of_a_file() {
     let told = run_cramped(&place, 10, "data info small.footwork --plot new.png");
     told.is_refusal(1, &["cannot write the picture new.png"]);
     let told = run_cramped(&place, 0, &format!("{TRAIN} --steps 1024 --out run"));
-    told.is_refusal(1, &["cannot write run/config.toml"]);
+    told.is_refusal(1, &["cannot write run/"]);
     assert_eq!(place.list(), before);
 
     // An older file stays as it was.
@@ -71,17 +71,23 @@ fn a_full_disk_leaves_no_part_of_a_file() {
 #[test]
 fn a_disk_that_fills_up_ends_a_training_with_a_summary() {
     let place = Place::with_data();
-    let told = run_cramped(&place, 20, &format!("{TRAIN} --steps 20480 --out run"));
-    told.is_refusal(1, &["run/"]);
-    assert_eq!(place.json("run/summary.json")["stopped_by"], "failure");
-    let left = place.list();
-    let names = left
-        .iter()
-        .map(|path| path.file_name().unwrap().to_string_lossy());
-    for name in names {
-        assert!(
-            !name.starts_with(".footwork-") && !name.ends_with(".ckpt"),
-            "{name}"
-        );
+    // Room for a checkpoint, but not for the metrics of so many updates.
+    let words = format!("{TRAIN} --steps 400000 --out run");
+    let told = run_cramped(&place, 250, &words);
+    told.is_refusal(1, &["cannot write run/metrics.jsonl"]);
+    assert!(
+        told.err.contains("without events for TensorBoard"),
+        "{told:?}"
+    );
+    let summary = place.json("run/summary.json");
+    assert_eq!(summary["stopped_by"], "failure");
+    for path in place.list() {
+        let name = path.file_name().unwrap().to_string_lossy();
+        assert!(!name.starts_with(".footwork-"), "{name}");
     }
+    // What was saved goes on.
+    let steps = summary["steps"].as_u64().unwrap() + 1024;
+    place.done(&format!("train plane --resume run --steps {steps}"));
+    let rows = super::rows(&place.path("run"));
+    assert_eq!(rows.len() as u64, steps / 1024);
 }

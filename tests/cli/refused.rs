@@ -53,10 +53,6 @@ fn mistaken_options_name_what_was_meant() {
         ("train plane --config small.footwork", "cannot read small"),
         ("train plane --resume run --envs 4", "cannot be used with"),
         (
-            "train plane --resume run --data small.footwork",
-            "cannot be used with",
-        ),
-        (
             "train plane --resume run --config a.toml",
             "cannot be used with",
         ),
@@ -211,7 +207,7 @@ fn a_folder_that_is_no_run_is_refused() {
     place.refused(
         "train plane --resume small.footwork",
         1,
-        &["not a run folder"],
+        &["is not in the checkpoints of a run"],
     );
     place.refused(
         "eval small.footwork",

@@ -15,7 +15,8 @@ fn start(place: &Place) -> Child {
         .spawn()
         .unwrap();
     let begin = Instant::now();
-    while !place.path("run/checkpoints/last.ckpt").exists() {
+    // It comes after the first checkpoint.
+    while !place.path("run/config.toml").exists() {
         assert!(begin.elapsed() < Duration::from_secs(60), "nothing saved");
         std::thread::sleep(Duration::from_millis(20));
     }

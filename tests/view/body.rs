@@ -44,7 +44,6 @@ fn untrained(config: &Config, task: &dyn Task) -> BodyPolicy {
         fingerprint: task.fingerprint(),
         config: config.to_toml(),
         steps: 0,
-        wall_s: 0.0,
     };
     let checkpoint = Checkpoint::take(header, &*learner, &envs, &TrainerState::default()).unwrap();
     BodyPolicy::new(checkpoint, config).unwrap()
