@@ -51,6 +51,8 @@ def table(results):
 
 
 def ratio(unit, ours, theirs):
+    if not (ours and theirs):
+        return ""
     # Of seconds less is better.
     times = theirs / ours if unit == "s" else ours / theirs
     return f"{times:.1f} times" if times < inf else ""

@@ -11,6 +11,7 @@ use footwork::physics::model::Model;
 use footwork::physics::scenes;
 use footwork::physics::simulator::{STEP_RATE, SUBSTEPS, SolverOptions};
 use footwork::report::table::table;
+use footwork::train::memory;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -130,6 +131,8 @@ impl Sim {
         if !(0.0..=10.0).contains(&self.action_std) {
             return Err(Usage("--action-std must lie between 0 and 10 rad".into()).into());
         }
+        let bytes = self.envs as u64 * memory::ENVIRONMENT;
+        memory::check(bytes, "use a smaller --envs")?;
         let model = Arc::new(self.load()?);
         if model.dofs.is_empty() {
             anyhow::bail!(

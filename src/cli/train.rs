@@ -14,6 +14,7 @@ use footwork::gpu::{Choice, Device};
 use footwork::rl::rollout::check_fits;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Preset};
+use footwork::train::memory;
 use footwork::train::metrics;
 use footwork::train::run_dir::{RunDir, Summary};
 use footwork::train::task::{Task, TaskEntry};
@@ -274,6 +275,10 @@ impl Opened {
         let spec = entry.check(config)?;
         let device = Device::open(config.device)?;
         check_fits(&device, &spec, config.ppo.rollout_length)?;
+        if let Device::Cpu = device {
+            let bytes = memory::of_training(&spec, config);
+            memory::check(bytes, "use a smaller --envs or ppo.rollout_length")?;
+        }
         // A resumed run must not change its device because another has appeared.
         config.device = device.choice();
         let loaded = (entry.load)(config)?;

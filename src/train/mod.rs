@@ -16,6 +16,7 @@ pub mod evaluation;
 #[cfg(feature = "report")]
 pub mod figures;
 pub mod locomotion;
+pub mod memory;
 pub mod metrics;
 pub mod metrics_writer;
 pub mod observer;

@@ -165,3 +165,26 @@ fn a_time_that_is_over_is_said() {
     place.refused("train plane --resume run --max-time 1s", 2, &[part]);
     place.done("train plane --resume run --max-time 2s");
 }
+
+/// In a cage of address space, so that the machine is not touched.
+#[test]
+fn too_many_environments_are_refused_before_anything_is_made() {
+    let place = Place::with_data();
+    let before = place.list();
+    for words in [
+        "train plane --data small.footwork --device cpu --envs 524288 --steps 1 --out run",
+        "train imitate --device cpu --envs 262144 --steps 1 --out run",
+        "sim --envs 1048576 --seconds 0.01 --device cpu",
+    ] {
+        let mut command = std::process::Command::new("sh");
+        command
+            .current_dir(place.path(""))
+            .args(["-c", "ulimit -v 3145728; exec \"$0\" \"$@\""]);
+        command
+            .arg(env!("CARGO_BIN_EXE_footwork"))
+            .args(words.split_whitespace());
+        let told = Told::from(words, command.output().unwrap());
+        told.is_refusal(1, &["of memory and", "use a smaller --envs"]);
+    }
+    assert_eq!(place.list(), before);
+}
