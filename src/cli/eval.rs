@@ -5,8 +5,13 @@ use super::run::Run;
 use super::say::{say, show};
 use anyhow::Result;
 use clap::Args;
+use footwork::train::body_policy::BodyPolicy;
+use footwork::train::checkpoint::Checkpoint;
 use footwork::train::evaluation::EvalOptions;
 use std::path::PathBuf;
+
+/// Episodes whose style is judged.
+const STYLE_EPISODES: usize = 64;
 
 #[derive(Args)]
 pub struct Eval {
@@ -58,17 +63,30 @@ impl Eval {
             planner: self.planner,
             motion_quality: self.motion_quality,
         };
-        let report = run.task.report(&checkpoint.policy, &wanted)?;
+        let mut report = run.task.report(&checkpoint.policy, &wanted)?;
+        let steps = checkpoint.header.steps;
+        if let Some(style) = self.style(&run, checkpoint)? {
+            report.json["style"] = style.into();
+            report.text += &format!("style reward {style:.2} a step\n");
+        }
         match self.json {
             true => say!("{}", report.json),
             false => show!(
-                "{} at {} steps, {} episodes\n{}",
+                "{} at {steps} steps, {} episodes\n{}",
                 run.path.display(),
-                checkpoint.header.steps,
                 self.episodes,
                 report.text
             ),
         }
         Ok(())
+    }
+
+    /// What a run's discriminator says of a body's first episodes.
+    fn style(&self, run: &Run, checkpoint: Checkpoint) -> Result<Option<f64>> {
+        let Some(episodes) = run.task.body() else {
+            return Ok(None);
+        };
+        let mut envs = episodes.open_all(self.episodes.min(STYLE_EPISODES));
+        Ok(BodyPolicy::new(checkpoint, &run.config)?.mean_style(&mut envs))
     }
 }

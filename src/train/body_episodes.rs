@@ -27,6 +27,11 @@ impl BodyEpisodes {
         }
     }
 
+    /// So many environments at the start of the episodes that evaluations begin with.
+    pub fn open_all(&self, episodes: usize) -> CpuHumanoidEnv {
+        CpuHumanoidEnv::unstaggered((self.task)(EPISODES_SEED), 0..episodes, EPISODES_SEED)
+    }
+
     /// One environment at the start of an episode.
     pub fn open(&self, episode: u32) -> CpuHumanoidEnv {
         let seed = EPISODES_SEED.wrapping_add(episode);

@@ -2,6 +2,9 @@
 
 use super::checkpoint::Checkpoint;
 use super::config::Config;
+use crate::env::humanoid::recorded::observe;
+use crate::env::humanoid::task::CpuHumanoidEnv;
+use crate::env::humanoid::task::play::play_episodes;
 use crate::nn::Policy;
 use crate::rl::amp::FrozenDiscriminator;
 use anyhow::{Context, Result};
@@ -33,5 +36,27 @@ impl BodyPolicy {
             policy: checkpoint.policy,
             discriminator,
         })
+    }
+
+    /// Mean style reward of a step, over one episode of each environment; `None` without a discriminator.
+    pub fn mean_style(&self, envs: &mut CpuHumanoidEnv) -> Option<f64> {
+        let discriminator = self.discriminator.as_ref()?;
+        let moment = |envs: &CpuHumanoidEnv, env: usize| {
+            let state = &envs.batch.worlds[env].state;
+            observe(envs.task().model(), &state.q, &state.v)
+        };
+        let count = envs.batch.worlds.len();
+        let mut before: Vec<Vec<f32>> = (0..count).map(|env| moment(envs, env)).collect();
+        let (mut sum, mut steps) = (0.0, 0usize);
+        let mean = |observation: &[f32]| self.policy.mean(observation);
+        play_episodes(envs, &mean, |envs, running| {
+            for env in (0..count).filter(|&env| running[env]) {
+                let now = moment(envs, env);
+                sum += f64::from(discriminator.reward([&before[env], &now]));
+                steps += 1;
+                before[env] = now;
+            }
+        });
+        Some(sum / steps.max(1) as f64)
     }
 }

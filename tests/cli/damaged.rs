@@ -240,7 +240,7 @@ fn damaged_metrics_cost_no_more_than_their_line() {
     let lines: Vec<&str> = good.lines().collect();
     let whole = lines.len();
     for (line, bad) in [
-        (2, lines[2][..60].as_bytes().to_vec()),
+        (2, lines[2].as_bytes()[..60].to_vec()),
         (3, vec![0; 80]),
         (4, b"\xff\xfe nonsense".to_vec()),
         (5, [lines[5], lines[6]].concat().into_bytes()),

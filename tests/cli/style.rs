@@ -13,7 +13,7 @@ const SMALL: &str = "--device cpu --envs 16 --set ppo.rollout_length=8 --set ppo
 fn bodies_learn_a_style_and_are_evaluated() {
     let place = Place::new();
     for (task, own) in [
-        ("imitate", ["survival", "speed_ratio", "dtw_m", "coverage"]),
+        ("imitate", ["survival", "speed_ratio", "style", "coverage"]),
         ("punch", ["survival", "hit_rate", "fist_rate", "coverage"]),
         (
             "joystick",
