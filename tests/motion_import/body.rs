@@ -7,6 +7,9 @@ use footwork::motion::import::{ImportOptions, import};
 use footwork::motion::skeleton::Skeleton;
 use glam::{Quat, Vec3};
 
+/// What a joint above the hips carries of their position.
+type Carried = fn(Vec3) -> Vec3;
+
 /// The walk with one more joint above the hips, which carries `carried` of what they move.
 fn on_a_root(clip: &Clip, carried: impl Fn(Vec3) -> Vec3) -> String {
     let Skeleton {
@@ -76,7 +79,7 @@ fn a_root_above_the_hips_keeps_their_motion_whole() {
     for (frame, position) in walk.positions.iter_mut().enumerate() {
         position.y += 0.01 * (frame as f32 * 0.4).sin();
     }
-    let carriers: [(&str, fn(Vec3) -> Vec3); 4] = [
+    let carriers: [(&str, Carried); 4] = [
         ("the root travels", |p| p.with_y(0.0)),
         ("the root stands still", |_| Vec3::ZERO),
         ("the root does everything", |p| p),

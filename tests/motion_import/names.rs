@@ -371,3 +371,29 @@ fn the_form_of_the_tree_tells_what_names_do_not() {
         .collect();
     assert_eq!(by_structure(&skeleton(&chain)), None);
 }
+
+#[test]
+fn no_tree_takes_long() {
+    // A chain of which the last joints have two limbs each, and names that share all but the end.
+    let mut skeleton = skeleton(&[]);
+    let mut add = |parent: Option<usize>| {
+        let name = format!("{}{}", "long".repeat(500), skeleton.joints());
+        skeleton.names.push(name);
+        skeleton.parents.push(parent);
+        skeleton.offsets.push(Vec3::Y);
+        skeleton.joints() - 1
+    };
+    let mut trunk = add(None);
+    for depth in 0..3000 {
+        trunk = add(Some(trunk));
+        for _ in 0..if depth < 2850 { 0 } else { 2 } {
+            let top = add(Some(trunk));
+            let middle = add(Some(top));
+            add(Some(middle));
+        }
+    }
+    let start = std::time::Instant::now();
+    let _ = Roles::find(&skeleton);
+    let seconds = start.elapsed().as_secs_f32();
+    assert!(seconds < 2.0, "{seconds} s");
+}
