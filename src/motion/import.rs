@@ -1,6 +1,7 @@
 //! From files to clips: the body alone, metres, y up, 30 Hz, without rest poses.
 
 mod bad_files;
+mod ends;
 mod folder;
 mod options;
 mod prepare;

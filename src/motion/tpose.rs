@@ -7,6 +7,7 @@ use super::bvh::Recording;
 use super::limbs::Limbs;
 use super::roles::Roles;
 use super::units;
+use std::ops::Range;
 
 /// A frame is a T-pose if both arms reach this far sideways (1 = straight out), both feet
 /// hang this far below the hips (1 = straight legs), and the hips stay where they are. Walking
@@ -33,22 +34,27 @@ const SMEARED: f32 = 0.3;
 /// How many frames to drop at the head and at the tail; (0, 0) for a recording that begins and
 /// ends otherwise, that is a T-pose throughout, or whose skeleton has no arms below the shoulder.
 pub fn find(recording: &Recording, roles: &Roles) -> (usize, usize) {
+    find_within(recording, roles, 0..recording.frames())
+}
+
+/// As [`find`], of some frames of a recording.
+pub fn find_within(recording: &Recording, roles: &Roles, within: Range<usize>) -> (usize, usize) {
     let Some(limbs) = Limbs::of(&recording.skeleton, roles) else {
         return (0, 0);
     };
-    let frames = recording.frames();
-    let leg = units::leg(&recording.skeleton, roles);
-    let slow = STILL * leg / recording.rate;
-    // Of the pair of frames, the first is the one nearer to the end of the recording.
+    let slow = STILL * units::leg(&recording.skeleton, roles) / recording.rate;
     let still = |a: usize, b: usize| recording.positions[a].distance(recording.positions[b]) < slow;
-    let stance = |frame: usize| Stance::of(&limbs, recording, frame);
-    let head = run(frames, recording.rate, stance, |f| still(f - 1, f));
-    let last = frames - 1;
-    let back = |frame: usize| stance(last - frame);
-    let tail = run(frames, recording.rate, back, |f| {
-        still(last - f + 1, last - f)
-    });
-    match head + tail < frames {
+    let run = |frame: &dyn Fn(usize) -> usize| {
+        run(
+            within.len(),
+            recording.rate,
+            |at| Stance::of(&limbs, recording, frame(at)),
+            |at| still(frame(at - 1), frame(at)),
+        )
+    };
+    let head = run(&|at| within.start + at);
+    let tail = run(&|at| within.end - 1 - at);
+    match head + tail < within.len() {
         true => (head, tail),
         false => (0, 0),
     }

@@ -70,6 +70,22 @@ fn a_rest_pose_on_the_spot_is_dropped_too() {
 }
 
 #[test]
+fn a_rest_pose_before_a_t_pose_is_dropped_with_it() {
+    let mut walk = walking(90);
+    walk.positions.iter_mut().for_each(|p| p.x += 3.0);
+    let start = walk.positions[0];
+    let posed = with_rest(walk, 40, &arms(1.57), start, true);
+    for frames in [1, 3, 40] {
+        for angle in [0.0, 1.57] {
+            let clip = with_rest(posed.clone(), frames, &arms(angle), Vec3::ZERO, true);
+            let (found, notes) = imported(&clip);
+            assert_eq!(found.frames(), 90, "{frames} {angle}: {notes:?}");
+            assert_walks(&found);
+        }
+    }
+}
+
+#[test]
 fn arms_held_out_are_no_rest_pose() {
     let mut walk = walking(150);
     for pose in walk.rotations.chunks_exact_mut(PERSON.len()) {

@@ -1,17 +1,20 @@
 //! From one recording to its clip.
 
+use super::ends::Ends;
 use super::folder::ClipReading;
 use super::subject::Subject;
+use crate::motion::bvh::Recording;
 use crate::motion::clip::Clip;
 use crate::motion::error::{MotionError, MotionResult};
 use crate::motion::facing::backwards;
 use crate::motion::findings::{ClipFindings, Finding, of_movement};
 use crate::motion::jumps::{self, Continuity, Jump};
+use crate::motion::manifest::Entry;
 use crate::motion::resample::resample;
 use crate::motion::roles::Roles;
 use crate::motion::track::LimbTrack;
+use crate::motion::units;
 use crate::motion::up::{self, UpAxis};
-use crate::motion::{tpose, units};
 use std::ops::Range;
 
 /// Jumps that an error lists before it counts the rest.
@@ -56,18 +59,59 @@ pub fn prepare(
         mut findings,
         ..
     } = subject;
+    let within = |error: MotionError| error.within(&file);
     let mut recording = body.recording;
     up::turn(&mut recording, reading.up);
+    check_sides(&recording, roles).map_err(within)?;
+    findings.extend(of_reading(reading, leg));
+    let listed = listed_frames(recording.frames(), entry.as_ref());
+    let leg_m = leg * reading.unit_m;
+    let mut track = LimbTrack::of(&recording, roles);
+    let ends = Ends::find(&recording, roles, &track, listed.clone(), entry.is_some());
+    findings.extend(ends.findings(leg_m));
+    findings.extend(twitch(&ends.continuity, leg_m));
+    let keep = if ends.continuity.inside.is_empty() {
+        ends.continuity.keep.clone()
+    } else if trim {
+        let longest = jumps::longest(&ends.continuity);
+        findings.push(trimmed(&ends.continuity, &longest, leg_m));
+        longest
+    } else {
+        return Err(within(jumping(&ends.continuity.inside, leg_m)));
+    };
+    track.keep(keep.clone());
+    findings.extend(of_movement(&track, leg_m));
+    let t_pose_frames = recording.frames() - listed.len() + ends.dropped();
+    let mut clip = resample(recording.into_clip(&name, reading.unit_m, keep));
+    if let Some(entry) = entry {
+        clip.source = entry.source;
+        clip.licence = entry.licence;
+    }
+    Ok(PreparedClip {
+        clip,
+        t_pose_frames,
+        findings,
+        unit_m: reading.unit_m,
+        up: reading.up,
+    })
+}
+
+fn check_sides(recording: &Recording, roles: &Roles) -> MotionResult<()> {
+    match backwards(recording, roles) {
+        None => Ok(()),
+        Some(share) => Err(MotionError::Sides {
+            percent: 100.0 * share,
+            file: roles.exchanged().to_file(&recording.skeleton),
+        }),
+    }
+}
+
+/// What was found about the axes and the unit.
+fn of_reading(reading: &ClipReading, leg: f32) -> Vec<Finding> {
+    let mut findings = Vec::new();
     if reading.up != UpAxis::Y {
         let what = format!("turned, since up was {}", reading.up.name());
         findings.push(Finding::new(&what, ""));
-    }
-    if let Some(share) = backwards(&recording, roles) {
-        let error = MotionError::Sides {
-            percent: 100.0 * share,
-            file: roles.exchanged().to_file(&recording.skeleton),
-        };
-        return Err(error.within(&file));
     }
     if let Some(remark) = units::remark(leg, reading.unit_m).filter(|_| reading.unit_found) {
         let what = "unusual size, give the unit with `--unit METRES` if it is wrong";
@@ -77,67 +121,22 @@ pub fn prepare(
         let unit = format!("{} m", reading.unit_m);
         findings.push(Finding::new("different units in one folder", unit));
     }
-    let (head, tail) = match &entry {
-        Some(entry) => (entry.skip_head, entry.skip_tail),
-        None => tpose::find(&recording, roles),
-    };
-    if entry.is_none() && head + tail > 0 {
-        let what = "T-pose frames dropped";
-        findings.push(Finding::new(what, (head + tail).to_string()));
-    }
-    let end = recording.frames().saturating_sub(tail);
-    let moving = head.min(end)..end;
-    let leg_m = leg * reading.unit_m;
-    let mut track = LimbTrack::of(&recording, roles);
-    let continuity = jumps::find(&track, moving.clone());
-    findings.extend(leftovers(&moving, &continuity, leg_m));
-    let keep = match continuity.inside.is_empty() {
-        true => continuity.keep.clone(),
-        false if trim => {
-            let longest = jumps::longest(&continuity);
-            findings.push(trimmed(&continuity, &longest, leg_m));
-            longest
-        }
-        false => return Err(jumping(&continuity.inside, leg_m).within(&file)),
-    };
-    if let [(frame, length), ..] = continuity.twitches[..] {
-        let metres = length * leg_m;
-        let detail = format!("{metres:.2} m after frame {}", frame + 1);
-        findings.push(Finding::new(
-            "a hand or a foot jumps, as of a marker that was lost",
-            detail,
-        ));
-    }
-    track.keep(keep.clone());
-    findings.extend(of_movement(&track, leg_m));
-    let clip = recording.into_clip(&name, reading.unit_m, keep);
-    let mut clip = resample(clip);
-    if let Some(entry) = entry {
-        clip.source = entry.source;
-        clip.licence = entry.licence;
-    }
-    Ok(PreparedClip {
-        clip,
-        t_pose_frames: head + tail + moving.len() - continuity.keep.len(),
-        findings,
-        unit_m: reading.unit_m,
-        up: reading.up,
-    })
+    findings
 }
 
-/// What was cut off at the ends.
-fn leftovers(moving: &Range<usize>, continuity: &Continuity, leg_m: f32) -> Option<Finding> {
-    let head = continuity.keep.start - moving.start;
-    let tail = moving.end - continuity.keep.end;
-    let parts = [(head, "at the start"), (tail, "at the end")];
-    let parts = parts.into_iter().filter(|(frames, _)| *frames > 0);
-    let parts: Vec<String> = parts
-        .map(|(frames, end)| format!("{frames} {end}"))
-        .collect();
-    let farthest = continuity.cut.iter().map(Jump::length).fold(0.0, f32::max) * leg_m;
-    let what = "rest frames dropped, from which the motion jumps";
-    (!parts.is_empty())
-        .then(|| Finding::new(what, format!("{}, {farthest:.2} m", parts.join(", "))))
+/// The frames that a manifest leaves; without one, all.
+fn listed_frames(frames: usize, entry: Option<&Entry>) -> Range<usize> {
+    let [head, tail] = entry.map_or([0, 0], |entry| [entry.skip_head, entry.skip_tail]);
+    let end = frames.saturating_sub(tail);
+    head.min(end)..end
+}
+
+fn twitch(continuity: &Continuity, leg_m: f32) -> Option<Finding> {
+    let (frame, length) = continuity.twitches.first()?;
+    let metres = length * leg_m;
+    let what = "a hand or a foot jumps, as of a marker that was lost";
+    let detail = format!("{metres:.2} m after frame {}", frame + 1);
+    Some(Finding::new(what, detail))
 }
 
 fn trimmed(continuity: &Continuity, longest: &Range<usize>, leg_m: f32) -> Finding {
