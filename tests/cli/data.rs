@@ -280,6 +280,7 @@ fn findings_are_kept_and_told() {
 #[test]
 fn options_of_an_import_settle_what_is_unclear() {
     let (place, text) = with_recording();
+    std::fs::create_dir(place.path("walk/more")).unwrap();
     place.write("walk/more/again.bvh", &text);
     place.write("walk/empty.bvh", "");
     place.refused(
