@@ -1,9 +1,17 @@
 //! From BVH files to clips: the format, what is refused and how, and real recordings.
 
+#[path = "motion_import/body.rs"]
+mod body;
 #[path = "motion_import/clips.rs"]
 mod clips;
+#[path = "motion_import/dialects.rs"]
+mod dialects;
+#[path = "motion_import/folders.rs"]
+mod folders;
 #[path = "motion_import/format.rs"]
 mod format;
+#[path = "motion_import/jumps.rs"]
+mod jumps;
 #[path = "support/mocap.rs"]
 mod mocap;
 #[path = "motion_import/names.rs"]
@@ -12,9 +20,13 @@ mod names;
 mod real;
 #[path = "motion_import/refused.rs"]
 mod refused;
+#[path = "motion_import/standing.rs"]
+mod standing;
 
 use footwork::motion::bvh::{self, Recording};
 use footwork::motion::clip::Clip;
+use footwork::motion::error::MotionResult;
+use footwork::motion::import::{ImportOptions, ImportedMotion, import};
 use footwork::motion::skeleton::Skeleton;
 use glam::{EulerRot, Quat, Vec3};
 use std::path::Path;
@@ -136,5 +148,72 @@ fn assert_same_motion(a: &Clip, b: &Clip) {
         assert!(apart.fold(0.0, f32::max) < 1e-4, "frame {frame}");
         let turned = r.iter().zip(&s).map(|(r, s)| angle(*r, *s));
         assert!(turned.fold(0.0, f32::max) < 1e-3, "frame {frame}");
+    }
+}
+
+/// Metres a second of [`walking`].
+const SPEED: f32 = 1.2;
+
+/// A person who walks along z at 30 Hz, arms and legs swinging.
+fn walking(frames: usize) -> Clip {
+    let swing = |frame: usize, joint: usize| {
+        let angle = 0.5 * (frame as f32 * 0.2).sin();
+        match joint {
+            1 | 11 => Quat::from_rotation_x(angle),
+            4 | 8 => Quat::from_rotation_x(-angle),
+            _ => Quat::IDENTITY,
+        }
+    };
+    let turns = (0..frames).flat_map(|f| (0..PERSON.len()).map(move |j| (f, j)));
+    Clip {
+        name: "walking".to_string(),
+        skeleton: skeleton(&PERSON),
+        rate: 30.0,
+        positions: (0..frames)
+            .map(|f| v(0.0, 0.87, f as f32 * SPEED / 30.0))
+            .collect(),
+        rotations: turns.map(|(f, j)| swing(f, j)).collect(),
+        source: String::new(),
+        licence: String::new(),
+    }
+}
+
+/// Imports these files out of one folder.
+fn import_all(files: &[(&str, &Clip)], options: &ImportOptions) -> MotionResult<ImportedMotion> {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, clip) in files {
+        bvh::write(&folder.path().join(format!("{name}.bvh")), clip).unwrap();
+    }
+    import(folder.path(), options)
+}
+
+fn import_one(clip: &Clip, options: &ImportOptions) -> MotionResult<ImportedMotion> {
+    import_all(&[("walk", clip)], options)
+}
+
+/// Metres a second over the ground, on average and at most.
+fn speeds(clip: &Clip) -> (f32, f32) {
+    let steps = clip.positions.windows(2);
+    let steps = steps.map(|pair| (pair[1] - pair[0]).with_y(0.0).length() * clip.rate);
+    let total: f32 = steps.clone().sum();
+    (
+        total / (clip.frames() - 1) as f32,
+        steps.fold(0.0, f32::max),
+    )
+}
+
+/// Fails unless a clip walks upright at the speed of [`walking`].
+fn assert_walks(clip: &Clip) {
+    let (mean, max) = speeds(clip);
+    assert!(
+        (mean - SPEED).abs() < 0.02 && max < SPEED + 0.05,
+        "{mean} {max}"
+    );
+    for frame in 0..clip.frames() {
+        let (at, _) = clip.world(frame);
+        assert!(
+            (at[0].y - 0.87).abs() < 0.01 && at[3].y < 0.3 && at[8].y > 1.2,
+            "{at:?}"
+        );
     }
 }

@@ -1,16 +1,19 @@
 //! `footwork data`.
 
+mod figures;
+
 use super::Usage;
 use super::say::{say, show, tell};
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand, ValueEnum};
+use figures::{ClipFigures, DataFigures};
 use footwork::matching::MotionMatcher;
 use footwork::motion::clip::Clip;
 use footwork::motion::database::Database;
-use footwork::motion::features::MIN_FUTURE_FRAMES;
 use footwork::motion::import::ImportOptions;
 use footwork::motion::normalise::Weights;
 use footwork::motion::synthetic::{self, boxing};
+use footwork::motion::up::UpAxis;
 use footwork::motion::{RATE, bvh};
 use footwork::report::table::table;
 use footwork::train::data;
@@ -46,6 +49,48 @@ impl From<WeightPreset> for Weights {
     }
 }
 
+/// How BVH files are read.
+#[derive(Args)]
+struct ReadingArgs {
+    /// Metres of one unit of the files [default: found from the length of the legs]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    unit: Option<f32>,
+    /// The axis that is up in the files: x, y, z, -x, -y or -z [default: found from how the person stands]
+    #[arg(long, value_name = "AXIS", value_parser = up_axis, allow_hyphen_values = true)]
+    up: Option<UpAxis>,
+    /// Cut recordings where they jump, and keep the longest piece of each
+    #[arg(long)]
+    trim: bool,
+    /// Read the files of sub-folders too
+    #[arg(long)]
+    recursive: bool,
+    /// Leave out files that cannot be used, instead of refusing all
+    #[arg(long)]
+    skip_bad: bool,
+}
+
+impl ReadingArgs {
+    fn options(&self, roles: Option<&Path>) -> Result<ImportOptions> {
+        if self.unit.is_some_and(|unit| !(1e-6..=1e3).contains(&unit)) {
+            return Err(Usage("--unit must be from 0.000001 to 1000 metres".into()).into());
+        }
+        Ok(ImportOptions {
+            unit_m: self.unit,
+            up: self.up,
+            roles: roles.map(Path::to_path_buf),
+            trim: self.trim,
+            recursive: self.recursive,
+            skip_bad: self.skip_bad,
+            mirror: false,
+        })
+    }
+}
+
+fn up_axis(text: &str) -> Result<UpAxis, String> {
+    let axis = UpAxis::ALL.into_iter().find(|axis| axis.name() == text);
+    axis.ok_or_else(|| "the axes are x, y, z, -x, -y and -z".to_string())
+}
+
 #[derive(Args)]
 pub struct Import {
     /// A folder of BVH files, or one of them
@@ -53,12 +98,11 @@ pub struct Import {
     /// The database file to write
     #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
-    /// Metres of one unit of the files [default: found from the skeleton's height]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
-    unit: Option<f32>,
-    /// A TOML file that names the joints of the roles that are not found by name
+    /// A TOML file that names the joints of roles that are not found
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
+    #[command(flatten)]
+    reading: ReadingArgs,
     /// Add the left/right mirrored copy of every clip
     #[arg(long)]
     mirror: bool,
@@ -99,6 +143,14 @@ pub struct Synth {
 pub struct Info {
     /// A database file, a BVH file or a folder of them [default: the synthetic motion]
     path: Option<PathBuf>,
+    /// Print which joint plays which part, as a roles file; with a FILE, take what it names
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
+    roles: Option<Option<PathBuf>>,
+    #[command(flatten)]
+    reading: ReadingArgs,
+    /// Print figures as JSON instead of tables
+    #[arg(long, conflicts_with = "plot")]
+    json: bool,
     /// Also draw speed against turning, and the directions of movement
     #[cfg(feature = "report")]
     #[arg(long, value_name = "PNG")]
@@ -117,13 +169,9 @@ impl Data {
 
 impl Import {
     fn run(self) -> Result<()> {
-        if self.unit.is_some_and(|unit| !(1e-6..=1e3).contains(&unit)) {
-            return Err(Usage("--unit must be from 0.000001 to 1000 metres".into()).into());
-        }
         let options = ImportOptions {
-            unit_m: self.unit,
-            roles: self.roles,
             mirror: self.mirror,
+            ..self.reading.options(self.roles.as_deref())?
         };
         let (database, notes) = data::from_bvh(&self.path, &options, self.weights.into())?;
         for note in notes {
@@ -189,11 +237,25 @@ fn save(database: Database, path: &Path) -> Result<()> {
 
 impl Info {
     fn run(self) -> Result<()> {
-        let (database, notes) = data::load(self.path.as_deref(), Weights::PAPER)?;
-        for note in notes {
+        let roles = self.roles.as_ref().and_then(Option::as_deref);
+        let options = self.reading.options(roles)?;
+        let (database, notes) = data::load_with(self.path.as_deref(), &options, Weights::PAPER)?;
+        for note in &notes {
             tell!("note: {note}");
         }
+        if self.json {
+            let figures = DataFigures::of(&database);
+            say!("{}", serde_json::to_string_pretty(&figures)?);
+            return Ok(());
+        }
+        if self.roles.is_some() {
+            show!("{}", database.roles.to_file(&database.skeleton));
+            return Ok(());
+        }
         show!("{}", clips(&database));
+        if notes.is_empty() {
+            show!("{}", findings(&database));
+        }
         say!(
             "\n{} clips, {:.1} minutes, {} frames at {RATE} Hz, {} candidates, fingerprint {:08x}\n",
             database.clips.len(),
@@ -237,30 +299,43 @@ fn draw_coverage(plot: &std::path::Path, motion: &[([f32; 2], f32)]) -> Result<(
     Ok(draw(plot, &samples)?)
 }
 
+/// What was found in the clips of a database when it was imported.
+fn findings(database: &Database) -> String {
+    let clips = database.clips.iter();
+    let notes = clips.flat_map(|clip| clip.findings.notes.iter().map(move |note| (clip, note)));
+    let lines = notes.map(|(clip, note)| format!("{}: {note}\n", clip.name));
+    lines.collect()
+}
+
+/// A table of the clips.
 fn clips(database: &Database) -> String {
-    let rows: Vec<Vec<String>> = database
-        .clips
-        .iter()
+    let rows: Vec<Vec<String>> = (0..database.clips.len())
         .map(|clip| {
-            let (first, last) = (clip.first, clip.first + clip.frames - 1);
-            let walked: f32 = database.path[first..=last]
-                .windows(2)
-                .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]))
-                .sum();
-            let seconds = clip.frames as f32 / RATE;
+            let figures = ClipFigures::of(database, clip);
+            let unit = figures.unit_m.map(|unit| unit.to_string());
             vec![
-                clip.name.clone(),
-                format!("{seconds:.1}"),
-                (clip.frames - MIN_FUTURE_FRAMES).to_string(),
-                format!("{:.2}", walked / seconds),
-                clip.licence.clone(),
+                figures.name.clone(),
+                format!("{:.1}", figures.seconds),
+                figures.candidates.to_string(),
+                format!("{:.2}", figures.mean_speed),
+                format!("{:.2}", figures.max_speed),
+                unit.unwrap_or_default(),
+                figures.up.map_or("", UpAxis::name).to_string(),
+                database.clips[clip].licence.clone(),
             ]
         })
         .collect();
-    table(
-        &["clip", "seconds", "candidates", "mean speed m/s", "licence"],
-        &rows,
-    )
+    let headers = [
+        "clip",
+        "seconds",
+        "candidates",
+        "mean speed m/s",
+        "max speed m/s",
+        "unit m",
+        "up",
+        "licence",
+    ];
+    table(&headers, &rows)
 }
 
 /// Minutes by speed and by turning rate.

@@ -70,10 +70,27 @@ pub struct Sim {
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
-    /// In place of random actions: a BVH file, or a folder of them, to put into the body
+    /// In place of random actions: recordings to put into the body, as `train --data` takes them
     #[cfg(feature = "viewer")]
     #[arg(long, value_name = "PATH", requires = "out", conflicts_with_all = RANDOM)]
     clip: Option<PathBuf>,
+    /// A TOML file that names the joints of roles that are not found in the recordings
+    #[cfg(feature = "viewer")]
+    #[arg(long, value_name = "FILE", requires = "clip")]
+    roles: Option<PathBuf>,
+    /// Metres of one unit of BVH files [default: found from the length of the legs]
+    #[cfg(feature = "viewer")]
+    #[arg(
+        long,
+        value_name = "METRES",
+        requires = "clip",
+        allow_negative_numbers = true
+    )]
+    unit: Option<f32>,
+    /// Bring recordings whose feet stand off the ground to it
+    #[cfg(feature = "viewer")]
+    #[arg(long, requires = "clip")]
+    ground: bool,
     /// Folder for two film strips of each clip: replayed, and with the drives following its angles
     #[cfg(feature = "viewer")]
     #[arg(long, value_name = "FOLDER", requires = "clip")]
@@ -152,11 +169,22 @@ impl Sim {
     #[cfg(feature = "viewer")]
     fn draw(&self, clip: &std::path::Path, folder: &std::path::Path) -> Result<()> {
         use footwork::motion::import::ImportOptions;
-        use footwork::physics::motion_library::MotionLibrary;
+        use footwork::physics::motion_list::{MotionList, MotionListOptions};
         use footwork::view::strip::strips;
 
         let model = Arc::new(self.load()?);
-        let library = MotionLibrary::load(&[clip], &ImportOptions::default(), &model)?;
+        let options = MotionListOptions {
+            import: ImportOptions {
+                unit_m: self.unit,
+                roles: self.roles.clone(),
+                ..ImportOptions::default()
+            },
+            ground: self.ground,
+            ..MotionListOptions::default()
+        };
+        let library = MotionList::read(clip, None)?
+            .load(&model, &options)?
+            .library;
         for note in &library.notes {
             tell!("note: {note}");
         }

@@ -79,6 +79,12 @@ pub struct Choices {
     /// Bring recordings whose feet stand off the ground to it, for simulated bodies
     #[arg(long)]
     ground: bool,
+    /// A TOML file that names the joints of roles that are not found in recordings, for simulated bodies
+    #[arg(long, value_name = "FILE")]
+    roles: Option<PathBuf>,
+    /// Metres of one unit of BVH files, for simulated bodies [default: found from the length of the legs]
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    unit: Option<f32>,
     /// Begin with what another run of a simulated body has learned: its folder, or one of its checkpoints
     #[arg(long, value_name = "RUN")]
     from: Option<PathBuf>,
@@ -257,6 +263,10 @@ impl Choices {
             config.data_folder = Some(std::path::absolute(&folder).unwrap_or(folder));
         }
         config.ground |= self.ground;
+        if let Some(roles) = self.roles.clone().or(config.roles.take()) {
+            config.roles = Some(std::path::absolute(&roles).unwrap_or(roles));
+        }
+        config.unit_m = self.unit.or(config.unit_m);
         Ok(config)
     }
 }

@@ -1,7 +1,10 @@
 //! Biovision Hierarchy files: the exchange format of motion capture.
 
+mod fault;
 mod hierarchy;
+mod number;
 mod read;
+mod text;
 mod values;
 mod write;
 
@@ -24,6 +27,17 @@ pub struct Recording {
     pub positions: Vec<Vec3>,
     /// Local rotations, `[frame][joint]`.
     pub rotations: Vec<Quat>,
+    /// Joints below the root that move against their parents; the skeleton has their mean.
+    pub slides: Vec<Slide>,
+}
+
+/// The movement of a joint against its parent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slide {
+    /// The joint that moves.
+    pub joint: usize,
+    /// Its offset from its parent, one a frame, file units.
+    pub positions: Vec<Vec3>,
 }
 
 impl Recording {
@@ -39,7 +53,7 @@ impl Recording {
     }
 
     /// The frames `keep` (which must be inside the recording) as a clip in metres, still at
-    /// the recording's own rate. `unit_m` is metres per file unit.
+    /// the recording's own rate and with rigid bones. `unit_m` is metres per file unit.
     pub fn into_clip(self, name: &str, unit_m: f32, keep: std::ops::Range<usize>) -> Clip {
         let joints = self.skeleton.joints();
         let mut skeleton = self.skeleton;

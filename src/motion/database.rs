@@ -3,6 +3,7 @@
 use super::character_frame::to_local;
 use super::clip::Clip;
 use super::features::{FEATURE_DIM, FRAMES_PER_STEP, MIN_FUTURE_FRAMES, ROW_STRIDE, extract};
+use super::findings::ClipFindings;
 use super::normalise::{Normalisation, Weights};
 use super::roles::Roles;
 use super::skeleton::Skeleton;
@@ -24,6 +25,9 @@ pub struct ClipRecord {
     pub source: String,
     /// Terms of use; empty if unknown.
     pub licence: String,
+    /// How its file was read, where it comes from one.
+    #[serde(default)]
+    pub findings: ClipFindings,
 }
 
 /// Six frames of root motion from a candidate, in its character frame.
@@ -112,6 +116,7 @@ impl Database {
                 frames: clip.frames(),
                 source: clip.source.clone(),
                 licence: clip.licence.clone(),
+                findings: ClipFindings::default(),
             });
             raw.extend_from_slice(&track.features);
             path.extend(

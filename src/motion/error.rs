@@ -45,11 +45,14 @@ pub enum MotionError {
     RolesFile { path: PathBuf, problem: String },
 
     #[error(
-        "unknown skeleton: no joint found for {missing}; its joints are {joints}. Name them in a \
-         roles file, a line like `left_foot = \"joint name\"` for each, and import with \
-         `footwork data import --roles FILE`"
+        "unknown skeleton: no joint found for {missing}; its joints are {joints}. Complete these \
+         lines in a roles file, and import with `footwork data import --roles FILE`:\n\n{file}"
     )]
-    MissingRoles { missing: String, joints: String },
+    MissingRoles {
+        missing: String,
+        joints: String,
+        file: String,
+    },
 
     #[error(
         "the roles do not fit the skeleton: {problem}; give a roles file that names other joints"
@@ -60,6 +63,28 @@ pub enum MotionError {
         "the unit of length is unclear: {problem}; give it with `footwork data import --unit METRES`"
     )]
     Unit { problem: String },
+
+    #[error(
+        "it is unclear which way is up: {problem}; say so with `footwork data import --up AXIS`"
+    )]
+    Up { problem: String },
+
+    #[error(
+        "left and right are exchanged: in {percent:.0} % of the frames the toes point backwards. These \
+         roles exchange them; put them in a roles file, and import with `footwork data import --roles \
+         FILE`:\n\n{file}"
+    )]
+    Sides { percent: f32, file: String },
+
+    #[error(
+        "{problem}; `footwork data import --trim` cuts recordings where they jump, and keeps the longest piece of each"
+    )]
+    Jumps { problem: String },
+
+    #[error(
+        "the joint '{joint}' moves by {moves} against its parent; bones must keep their length: export rotations only below the root"
+    )]
+    Stretching { joint: String, moves: f32 },
 
     #[error(
         "cannot mirror: {problem}; import without mirroring, or rename the joints so that left and right pair up"
@@ -81,6 +106,14 @@ pub enum MotionError {
         path: PathBuf,
         reasons: String,
         frames: usize,
+    },
+
+    #[error("{} of {total} files in {} cannot be used; correct or remove them, or leave them out with `footwork data import --skip-bad`:\n  {}", .bad, .path.display(), .problems.join("\n  "))]
+    BadFiles {
+        path: PathBuf,
+        bad: usize,
+        total: usize,
+        problems: Vec<String>,
     },
 
     /// An error of a function that knows no files, met while working on this one.

@@ -22,18 +22,56 @@ pub struct Entry {
 /// Entries by the `file` column: a path relative to the manifest's folder, with slashes.
 pub type Manifest = HashMap<String, Entry>;
 
-/// Reads a manifest; `None` if there is no such file.
+/// What a file called `manifest.csv` is.
+pub enum ManifestFile {
+    /// There is none.
+    Nothing,
+    /// Something else: it has no column `file`.
+    Stranger,
+    /// A manifest.
+    Ours(Manifest),
+}
+
+/// Reads a manifest.
 ///
-/// A comma separated table. Its first row names the columns; only `file` must be there. Fields
-/// may be quoted, because descriptions have commas in them.
-pub fn read(path: &Path) -> MotionResult<Option<Manifest>> {
-    match std::fs::read_to_string(path) {
-        Ok(text) => parse(&text, path).map(Some),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+/// A table with commas, or semicolons as spreadsheets write them where commas are decimal. Its first row
+/// names the columns; only `file` must be there. Fields may be quoted, because descriptions have commas
+/// in them.
+///
+/// # Errors
+/// A file that cannot be read, and mistakes in a manifest, with the line.
+pub fn read(path: &Path) -> MotionResult<ManifestFile> {
+    match std::fs::read(path) {
+        Ok(bytes) => match std::str::from_utf8(&bytes) {
+            Ok(text) if is_manifest(text) => parse(text, path).map(ManifestFile::Ours),
+            _ => Ok(ManifestFile::Stranger),
+        },
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(ManifestFile::Nothing),
         Err(error) => Err(MotionError::Read {
             path: path.to_path_buf(),
             error,
         }),
+    }
+}
+
+/// Whether the first row has a column `file`.
+fn is_manifest(text: &str) -> bool {
+    let header = text
+        .trim_start_matches('\u{feff}')
+        .trim_start()
+        .lines()
+        .next();
+    let mut columns = header.unwrap_or_default().split([',', ';']);
+    columns.any(|column| column.trim().trim_matches('"') == "file")
+}
+
+/// What separates the columns.
+fn separator(text: &str) -> char {
+    let header = text.trim_start().lines().next().unwrap_or_default();
+    if header.contains(',') || !header.contains(';') {
+        ','
+    } else {
+        ';'
     }
 }
 
@@ -45,7 +83,7 @@ pub fn parse(text: &str, path: &Path) -> MotionResult<Manifest> {
         problem,
     };
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut rows = rows(text)
+    let mut rows = rows(text, separator(text))
         .map_err(|line| fault(line, "a quote that is never closed".to_string()))?
         .into_iter();
     let (line, header) = rows.next().unwrap_or_default();
@@ -83,7 +121,7 @@ fn entry(row: &HashMap<&str, &str>) -> Result<Entry, String> {
     };
     let unit_m = match text("unit_m") {
         "" => None,
-        field => match field.parse::<f32>() {
+        field => match field.replace(',', ".").parse::<f32>() {
             Ok(unit) if unit.is_finite() && unit > 0.0 => Some(unit),
             _ => return Err(format!("unit_m is '{field}', not a length in metres")),
         },
@@ -98,7 +136,7 @@ fn entry(row: &HashMap<&str, &str>) -> Result<Entry, String> {
 }
 
 /// Rows with the line each begins on (from 1); the error is the line of an open quote.
-fn rows(text: &str) -> Result<Vec<(usize, Vec<String>)>, usize> {
+fn rows(text: &str, separator: char) -> Result<Vec<(usize, Vec<String>)>, usize> {
     let mut rows = Vec::new();
     let (mut row, mut field) = (Vec::new(), String::new());
     let (mut line, mut begin, mut quoted) = (1, 1, None);
@@ -109,7 +147,7 @@ fn rows(text: &str) -> Result<Vec<(usize, Vec<String>)>, usize> {
             '"' if quoted.is_some() && chars.next_if_eq(&'"').is_some() => field.push('"'),
             '"' if quoted.is_some() => quoted = None,
             '"' if field.is_empty() => quoted = Some(line),
-            ',' if quoted.is_none() => row.push(std::mem::take(&mut field)),
+            _ if c == separator && quoted.is_none() => row.push(std::mem::take(&mut field)),
             '\r' if quoted.is_none() => {}
             '\n' if quoted.is_none() => {
                 row.push(std::mem::take(&mut field));

@@ -7,6 +7,7 @@
 
 use super::clip::Clip;
 use super::error::{MotionError, MotionResult};
+use super::sides::{Sided, side};
 use super::skeleton::Skeleton;
 use glam::{Quat, Vec3};
 
@@ -45,7 +46,7 @@ pub fn pairs(skeleton: &Skeleton) -> MotionResult<Vec<usize>> {
     let find = |name: &str| skeleton.names.iter().position(|n| n == name);
     let mut pairs = Vec::with_capacity(skeleton.joints());
     for (joint, name) in skeleton.names.iter().enumerate() {
-        let Some(other) = other_side(name) else {
+        let Some(Sided { other, .. }) = side(name) else {
             pairs.push(joint);
             continue;
         };
@@ -66,38 +67,6 @@ pub fn pairs(skeleton: &Skeleton) -> MotionResult<Vec<usize>> {
         }
     }
     Ok(pairs)
-}
-
-/// The name of the same joint on the other side, if the name has a side: a word (LeftArm,
-/// mixamorig:LeftArm, simLeftArm, leftEye) or a letter (LHipJoint, lShldr, L_Hip, thigh_l, Hand.R).
-fn other_side(name: &str) -> Option<String> {
-    const WORDS: [(&str, &str); 3] = [("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT")];
-    for (left, right) in WORDS {
-        if name.contains(left) {
-            return Some(name.replacen(left, right, 1));
-        }
-        if name.contains(right) {
-            return Some(name.replacen(right, left, 1));
-        }
-    }
-    let parts: Vec<(usize, char)> = name.char_indices().collect();
-    let is_side = |at: usize| {
-        let (_, letter) = parts[at];
-        let break_before = at == 0 || !parts[at - 1].1.is_alphanumeric();
-        let break_after = parts.get(at + 1).is_none_or(|c| !c.1.is_alphanumeric());
-        // A letter alone between breaks, or one that begins a name and is followed by a capital.
-        let begins = break_before && parts.get(at + 1).is_some_and(|c| c.1.is_uppercase());
-        matches!(letter, 'l' | 'r' | 'L' | 'R') && break_before && (break_after || begins)
-    };
-    let at = (0..parts.len()).find(|&at| parts.len() > 1 && is_side(at))?;
-    let (start, letter) = parts[at];
-    let other = match letter {
-        'l' => "r",
-        'r' => "l",
-        'L' => "R",
-        _ => "L",
-    };
-    Some(format!("{}{other}{}", &name[..start], &name[start + 1..]))
 }
 
 /// The axis (0, 1, 2) whose reflection maps the offsets of each side on the other's best.

@@ -1,4 +1,7 @@
-//! Which joint plays which part: found by name, or told by a small file.
+//! Which joint plays which part: found by name, else by the form of the tree, or told by a small file.
+
+mod names;
+pub mod structure;
 
 use super::error::{MotionError, MotionResult};
 use super::skeleton::Skeleton;
@@ -40,27 +43,18 @@ pub const ROLES: [&str; 9] = [
     "right_shoulder",
 ];
 
-/// What the conventions call each part, the surest name first. Skeletons with collar bones call
-/// them "shoulder" and the upper arm "arm"; those with ankles call the toe joint "foot". So
-/// "shoulder" and "foot" come late in their lists. A skeleton without toes ends at the foot,
-/// which then plays the toe as well.
-const HIPS: &[&str] = &["hips", "hip", "pelvis"];
-const HIP: &[&str] = &["upleg", "thigh", "upperleg", "hip"];
-const FOOT: &[&str] = &["ankle", "foot"];
-const TOE: &[&str] = &["toebase", "toe", "toes", "toe0", "ball", "foot", "ankle"];
-const SHOULDER: &[&str] = &["arm", "shldr", "upperarm", "uparm", "shoulder"];
-
 impl Roles {
-    /// Finds the roles by the joints' names: LaFAN1, CMU (MotionBuilder and daz), Mixamo, `sim*`
-    /// and most others that say left and right by a word or a letter.
+    /// Finds the roles by the joints' names, without what programs put before them: LaFAN1, CMU
+    /// (MotionBuilder and daz), Mixamo, `sim*` and most others that say left and right by a word or a
+    /// letter. What names do not tell is found by the form of the tree.
     ///
-    /// Errors: roles that no joint's name fits, with the list of joints.
+    /// Errors: roles that no joint fits, with the list of joints and a roles file to complete.
     pub fn find(skeleton: &Skeleton) -> MotionResult<Roles> {
         Self::complete([None; 9], skeleton)
     }
 
     /// Reads roles from a TOML file of lines `left_foot = "joint name"`; what the file leaves
-    /// out is found by name.
+    /// out is found as without a file.
     ///
     /// Errors: an unreadable file, unknown keys, unknown joints (each names the nearest known).
     pub fn read(path: &Path, skeleton: &Skeleton) -> MotionResult<Roles> {
@@ -74,38 +68,42 @@ impl Roles {
         Self::complete(given, skeleton).map_err(|error| error.within(path))
     }
 
-    /// Fills in by name what is not given.
+    /// Fills in what is not given.
     fn complete(mut given: [Option<usize>; 9], skeleton: &Skeleton) -> MotionResult<Roles> {
-        let names: Vec<String> = skeleton.names.iter().map(|name| plain(name)).collect();
-        for (role, joint) in given.iter_mut().enumerate() {
-            *joint = joint.or_else(|| by_name(role, &names));
+        let told = given[0].is_some();
+        fill(&mut given, names::find(&skeleton.names));
+        if given.contains(&None) {
+            fill(
+                &mut given,
+                structure::find(skeleton).map_or([None; 9], |all| all.map(Some)),
+            );
+        }
+        if !told {
+            given[0] = hips(&given, skeleton);
         }
         // A foot that only the file could name still serves as the toe.
         given[5] = given[5].or(given[3]);
         given[6] = given[6].or(given[4]);
-        let missing: Vec<&str> = (0..9)
-            .filter(|&role| given[role].is_none())
-            .map(|role| ROLES[role])
-            .collect();
         let found: Vec<usize> = given.into_iter().flatten().collect();
-        let &[
-            hips,
-            left_hip,
-            right_hip,
-            left_foot,
-            right_foot,
-            left_toe,
-            right_toe,
-            left_shoulder,
-            right_shoulder,
-        ] = found.as_slice()
-        else {
+        let Ok(joints) = <[usize; 9]>::try_from(found) else {
+            let missing = (0..9).filter(|&role| given[role].is_none());
             return Err(MotionError::MissingRoles {
-                missing: missing.join(", "),
+                missing: missing
+                    .map(|role| ROLES[role])
+                    .collect::<Vec<_>>()
+                    .join(", "),
                 joints: skeleton.names.join(", "),
+                file: file(&given, skeleton),
             });
         };
-        let roles = Roles {
+        let roles = Roles::of(joints);
+        roles.check(skeleton)?;
+        Ok(roles)
+    }
+
+    /// The roles of these joints, in the order of [`ROLES`].
+    pub fn of(joints: [usize; 9]) -> Roles {
+        let [
             hips,
             left_hip,
             right_hip,
@@ -115,9 +113,40 @@ impl Roles {
             right_toe,
             left_shoulder,
             right_shoulder,
-        };
-        roles.check(skeleton)?;
-        Ok(roles)
+        ] = joints;
+        Roles {
+            hips,
+            left_hip,
+            right_hip,
+            left_foot,
+            right_foot,
+            left_toe,
+            right_toe,
+            left_shoulder,
+            right_shoulder,
+        }
+    }
+
+    /// The roles with left and right exchanged.
+    pub fn exchanged(&self) -> Roles {
+        let mut joints = self.joints();
+        for left in [1, 3, 5, 7] {
+            joints.swap(left, left + 1);
+        }
+        Roles::of(joints)
+    }
+
+    /// A roles file that says the same.
+    pub fn to_file(&self, skeleton: &Skeleton) -> String {
+        file(&self.joints().map(Some), skeleton)
+    }
+
+    /// The roles whose joints were found by the form of the tree, since no name tells them.
+    pub fn unnamed(&self, skeleton: &Skeleton) -> Vec<&'static str> {
+        let named = names::find(&skeleton.names);
+        let joints = self.joints();
+        let unnamed = (0..9).filter(|&role| named[role] != Some(joints[role]));
+        unnamed.map(|role| ROLES[role]).collect()
     }
 
     /// Joint indices in the order of [`ROLES`].
@@ -184,39 +213,32 @@ fn below(skeleton: &Skeleton, low: usize, high: usize) -> bool {
         .any(|joint| joint == high)
 }
 
-/// A name without its namespace, a program's prefix, punctuation and case.
-fn plain(name: &str) -> String {
-    let name = name.rsplit(':').next().unwrap_or(name);
-    let kept = name.chars().filter(|c| c.is_alphanumeric());
-    let name: String = kept.flat_map(char::to_lowercase).collect();
-    let stripped = name
-        .strip_prefix("mixamorig")
-        .map(|rest| rest.trim_start_matches(|c: char| c.is_ascii_digit()))
-        .or_else(|| name.strip_prefix("sim"))
-        .or_else(|| name.strip_prefix("bip001"))
-        .or_else(|| name.strip_prefix("bip01"));
-    stripped.unwrap_or(&name).to_string()
+/// Fills in what is missing.
+fn fill(given: &mut [Option<usize>; 9], found: [Option<usize>; 9]) {
+    for (given, found) in given.iter_mut().zip(found) {
+        *given = given.or(found);
+    }
 }
 
-fn by_name(role: usize, names: &[String]) -> Option<usize> {
-    let position = |wanted: String| names.iter().position(|name| *name == wanted);
-    let parts = match role {
-        0 => return HIPS.iter().find_map(|part| position(part.to_string())),
-        1 | 2 => HIP,
-        3 | 4 => FOOT,
-        5 | 6 => TOE,
-        _ => SHOULDER,
-    };
-    let (word, letter) = match role % 2 {
-        1 => ("left", "l"),
-        _ => ("right", "r"),
-    };
-    parts.iter().find_map(|part| {
-        position(format!("{word}{part}"))
-            .or_else(|| position(format!("{letter}{part}")))
-            .or_else(|| position(format!("{part}{letter}")))
-            .or_else(|| position(format!("{part}{word}")))
-    })
+/// The joint called hips if legs and arms hang on it, else the lowest on which they do.
+fn hips(found: &[Option<usize>; 9], skeleton: &Skeleton) -> Option<usize> {
+    let limbs: Vec<usize> = [1, 2, 7, 8]
+        .iter()
+        .filter_map(|&role| found[role])
+        .collect();
+    let carries = |hips: usize| limbs.iter().all(|&limb| below(skeleton, limb, hips));
+    match found[0] {
+        Some(hips) if limbs.len() < 4 || carries(hips) => Some(hips),
+        _ if limbs.len() == 4 => structure::common_ancestor(skeleton, &limbs),
+        _ => None,
+    }
+}
+
+/// A roles file; lines of roles without a joint are left to be completed.
+fn file(roles: &[Option<usize>; 9], skeleton: &Skeleton) -> String {
+    let name = |joint: Option<usize>| joint.map_or("", |joint| &skeleton.names[joint]);
+    let line = |(role, &joint)| format!("{role} = {}\n", toml::Value::from(name(joint)));
+    ROLES.iter().zip(roles).map(line).collect()
 }
 
 /// The roles that a file names, in the order of [`ROLES`].

@@ -4,13 +4,19 @@
 //! frames, and actors stand in it to be calibrated (seconds). None of it is motion to learn.
 
 use super::bvh::Recording;
+use super::limbs::Limbs;
 use super::roles::Roles;
-use super::skeleton::Skeleton;
+use super::units;
+use std::ops::Range;
 
-/// A frame is a T-pose if both arms reach this far sideways (1 = straight out) and both feet
-/// hang this far below the hips (1 = straight legs). Walking stays below 0.5 and 1.
+/// A frame is a T-pose if both arms reach this far sideways (1 = straight out), both feet
+/// hang this far below the hips (1 = straight legs), and the hips stay where they are. Walking
+/// stays below 0.5 and 1.
 const ARMS_OUT: f32 = 0.85;
 const LEGS_DOWN: f32 = 0.9;
+
+/// The hips of who stands still move slower than this, leg lengths a second.
+const STILL: f32 = 0.35;
 
 /// How far the arms of a T-pose reach that nothing has smeared.
 const CLEAN: f32 = 0.95;
@@ -22,17 +28,33 @@ const ARMS_DOWN: f32 = 0.3;
 const LOWERING: f32 = 1.0;
 const SETTLING: f32 = 0.05;
 
+/// Seconds over which resampling smears a single frame of T-pose into motion that is under way.
+const SMEARED: f32 = 0.3;
+
 /// How many frames to drop at the head and at the tail; (0, 0) for a recording that begins and
 /// ends otherwise, that is a T-pose throughout, or whose skeleton has no arms below the shoulder.
 pub fn find(recording: &Recording, roles: &Roles) -> (usize, usize) {
+    find_within(recording, roles, 0..recording.frames())
+}
+
+/// As [`find`], of some frames of a recording.
+pub fn find_within(recording: &Recording, roles: &Roles, within: Range<usize>) -> (usize, usize) {
     let Some(limbs) = Limbs::of(&recording.skeleton, roles) else {
         return (0, 0);
     };
-    let frames = recording.frames();
-    let stance = |frame: usize| limbs.stance(recording, frame);
-    let head = run(frames, recording.rate, stance);
-    let tail = run(frames, recording.rate, |frame| stance(frames - 1 - frame));
-    match head + tail < frames {
+    let slow = STILL * units::leg(&recording.skeleton, roles) / recording.rate;
+    let still = |a: usize, b: usize| recording.positions[a].distance(recording.positions[b]) < slow;
+    let run = |frame: &dyn Fn(usize) -> usize| {
+        run(
+            within.len(),
+            recording.rate,
+            |at| Stance::of(&limbs, recording, frame(at)),
+            |at| still(frame(at - 1), frame(at)),
+        )
+    };
+    let head = run(&|at| within.start + at);
+    let tail = run(&|at| within.end - 1 - at);
+    match head + tail < within.len() {
         true => (head, tail),
         false => (0, 0),
     }
@@ -44,16 +66,29 @@ struct Stance {
     t_pose: bool,
 }
 
-/// Frames from the first on that belong to a T-pose.
-fn run(frames: usize, rate: f32, stance: impl Fn(usize) -> Stance) -> usize {
-    let still = (0..frames).take_while(|&f| stance(f).t_pose).count();
+/// Frames from the first on that belong to a T-pose; `stays` says whether the hips are where they were
+/// one frame before.
+fn run(
+    frames: usize,
+    rate: f32,
+    stance: impl Fn(usize) -> Stance,
+    stays: impl Fn(usize) -> bool,
+) -> usize {
+    let still = (0..frames)
+        .take_while(|&f| stance(f).t_pose && (f == 0 || stays(f)))
+        .count();
     if still == 0 {
         return 0;
     }
-    let longest = still + (LOWERING * rate) as usize;
-    let lowering = (still..frames.min(longest))
-        .take_while(|&f| stance(f).reach > ARMS_DOWN)
-        .count();
+    // Somebody on the move with the arms out, unless they come down at once.
+    let walks = still == 1 && frames > 1 && stance(1).t_pose;
+    let patience = if walks { SMEARED } else { LOWERING };
+    let longest = frames.min(still + (patience * rate) as usize);
+    let Some(down) = (still..longest).find(|&f| stance(f).reach <= ARMS_DOWN) else {
+        // Arms that stay out are part of the motion.
+        return if walks { 0 } else { still };
+    };
+    let lowering = down - still;
     // Only a smeared T-pose has frames between the pose and the motion, or starts out of shape.
     let smeared = lowering > 0 || stance(still - 1).reach < CLEAN;
     let settling = match smeared {
@@ -63,38 +98,17 @@ fn run(frames: usize, rate: f32, stance: impl Fn(usize) -> Stance) -> usize {
     (still + lowering + settling).min(frames)
 }
 
-/// The joints to look at: shoulder, elbow and hand, hip and foot, left then right.
-struct Limbs {
-    arms: [[usize; 3]; 2],
-    legs: [[usize; 2]; 2],
-}
-
-impl Limbs {
-    fn of(skeleton: &Skeleton, roles: &Roles) -> Option<Limbs> {
-        let below = |joint: usize| skeleton.parents.iter().position(|&p| p == Some(joint));
-        let arm = |shoulder: usize| {
-            let elbow = below(shoulder)?;
-            Some([shoulder, elbow, below(elbow)?])
-        };
-        Some(Limbs {
-            arms: [arm(roles.left_shoulder)?, arm(roles.right_shoulder)?],
-            legs: [
-                [roles.left_hip, roles.left_foot],
-                [roles.right_hip, roles.right_foot],
-            ],
-        })
-    }
-
-    fn stance(&self, recording: &Recording, frame: usize) -> Stance {
+impl Stance {
+    fn of(limbs: &Limbs, recording: &Recording, frame: usize) -> Stance {
         let skeleton = &recording.skeleton;
         let (at, _) = skeleton.world(recording.positions[frame], recording.pose(frame));
-        let left = (at[self.arms[0][0]] - at[self.arms[1][0]]).normalize_or_zero();
+        let left = (at[limbs.arms[0][0]] - at[limbs.arms[1][0]]).normalize_or_zero();
         let [left, right] = [(0, left), (1, -left)].map(|(arm, outwards)| {
-            let [shoulder, elbow, hand] = self.arms[arm].map(|joint| at[joint]);
+            let [shoulder, elbow, hand] = limbs.arms[arm].map(|joint| at[joint]);
             let length = shoulder.distance(elbow) + elbow.distance(hand);
             (hand - shoulder).dot(outwards) / length.max(f32::MIN_POSITIVE)
         });
-        let straight = self.legs.iter().all(|&[hip, foot]| {
+        let straight = limbs.legs.iter().all(|&[hip, foot]| {
             let length = skeleton.reach(hip, foot).max(f32::MIN_POSITIVE);
             (at[hip] - at[foot]).y / length > LEGS_DOWN
         });

@@ -46,6 +46,12 @@ pub struct Config {
     /// Whether recordings whose feet stand off the ground are brought to it, for tasks of a simulated body.
     #[serde(skip_serializing_if = "std::ops::Not::not", default)]
     pub ground: bool,
+    /// A roles file for recordings whose joints are not found, for tasks of a simulated body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roles: Option<PathBuf>,
+    /// Metres of one unit of BVH files, for tasks of a simulated body; without it found from the skeletons.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit_m: Option<f32>,
     /// Environment steps after which training stops.
     pub steps: u64,
     /// Seconds after which training stops.
@@ -180,6 +186,8 @@ impl Config {
             data: None,
             data_folder: None,
             ground: false,
+            roles: None,
+            unit_m: None,
             steps: chosen.steps,
             max_time_s: None,
             stop_at_success: None,
@@ -296,6 +304,8 @@ impl Config {
         let named = |path: &PathBuf| !path.as_os_str().is_empty();
         config.data = config.data.filter(named);
         config.data_folder = config.data_folder.filter(named);
+        config.roles = config.roles.filter(named);
+        config.unit_m = config.unit_m.filter(|&unit| unit != 0.0);
         config.max_time_s = config.max_time_s.filter(|&seconds| seconds != 0.0);
         config.stop_at_success = config.stop_at_success.filter(|&success| success != 0.0);
         Ok(config)
@@ -307,6 +317,8 @@ impl Config {
         all.entry("data").or_insert("".into());
         all.entry("data_folder").or_insert("".into());
         all.entry("ground").or_insert(false.into());
+        all.entry("roles").or_insert("".into());
+        all.entry("unit_m").or_insert(0.0.into());
         all.entry("max_time_s").or_insert(0.0.into());
         all.entry("stop_at_success").or_insert(0.0.into());
         all
@@ -315,6 +327,12 @@ impl Config {
     /// The text of a `config.toml`: the version of this program, then every key that has a value.
     pub fn to_toml(&self) -> String {
         format!("version = \"{VERSION}\"\n{}", text(self))
+    }
+
+    /// Whether it says how recordings are read for a simulated body.
+    pub(super) fn reads_for_bodies(&self) -> bool {
+        let read = self.roles.is_some() || self.unit_m.is_some();
+        self.ground || self.data_folder.is_some() || read
     }
 
     /// Environment steps of an update.
@@ -360,6 +378,9 @@ impl Config {
         }
         if let Some(success) = self.stop_at_success {
             within("stop_at_success", success, 0.01, 1.0)?;
+        }
+        if let Some(unit) = self.unit_m {
+            within("unit_m", f64::from(unit), 1e-6, 1e3)?;
         }
         check_ppo(&self.ppo)?;
         self.amp.as_ref().map_or(Ok(()), check_amp)

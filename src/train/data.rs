@@ -19,6 +19,18 @@ pub const SYNTHETIC_SEED: u64 = 1;
 /// # Errors
 /// The data is missing, damaged or something else, or no clip is long enough to be matched.
 pub fn load(path: Option<&Path>, weights: Weights) -> Result<(Database, Vec<String>)> {
+    load_with(path, &ImportOptions::default(), weights)
+}
+
+/// Loads as [`load`] does, with choices for BVH files.
+///
+/// # Errors
+/// Those of [`load`].
+pub fn load_with(
+    path: Option<&Path>,
+    options: &ImportOptions,
+    weights: Weights,
+) -> Result<(Database, Vec<String>)> {
     let Some(path) = path else {
         let (clips, roles) = synthetic::perform(SYNTHETIC_SEED, synthetic::MINUTES);
         let note = "no data given: synthetic motion of the built-in performer".to_string();
@@ -28,7 +40,7 @@ pub fn load(path: Option<&Path>, weights: Weights) -> Result<(Database, Vec<Stri
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("bvh"));
     if path.is_dir() || bvh {
-        return from_bvh(path, &ImportOptions::default(), weights);
+        return from_bvh(path, options, weights);
     }
     match Database::load(path) {
         Ok(database) => Ok((database, Vec::new())),
@@ -65,8 +77,9 @@ pub fn from_bvh(
     weights: Weights,
 ) -> Result<(Database, Vec<String>)> {
     let import = import(path, options)?;
-    Ok((
-        Database::build(&import.clips, import.roles, weights)?,
-        import.notes,
-    ))
+    let mut database = Database::build(&import.clips, import.roles, weights)?;
+    for (clip, findings) in database.clips.iter_mut().zip(import.findings) {
+        clip.findings = findings;
+    }
+    Ok((database, import.notes))
 }

@@ -65,9 +65,10 @@ impl TaskEntry {
         if let Some(amp) = &config.amp {
             network(amp, 2 * spec.style).map_err(ConfigError::Discriminator)?;
         }
-        if !self.takes_motions && (config.ground || config.data_folder.is_some()) {
+        if !self.takes_motions && config.reads_for_bodies() {
             return Err(ConfigError::Settings(format!(
-                "the task `{}` takes no motion list: leave out `ground` and `data_folder`",
+                "the task `{}` takes no motion list: leave out `ground`, `data_folder`, `roles` and \
+                 `unit_m`, or make a database with `footwork data import`",
                 self.name
             )));
         }

@@ -134,7 +134,11 @@ fn recordings_that_are_none_are_refused() {
         &words[words.len() - 899..].concat(),
     ]
     .concat();
-    let none = text.replace("LeftFoot", "Klump").replace("LeftToe", "Zeh");
+    // A foot that neither its name nor its place at the end of a leg tells.
+    let (before, foot) = text.split_once("LeftFoot").unwrap();
+    let offset = foot.lines().find(|line| line.contains("OFFSET")).unwrap();
+    let foot = foot.replacen(offset, "OFFSET 0 -1 0", 1);
+    let none = format!("{before}Klump{foot}").replace("LeftToe", "Zeh");
     for (name, contents, parts) in [
         (
             "binary",
@@ -170,6 +174,7 @@ fn recordings_that_are_none_are_refused() {
                 "no joint found for left_foot, left_toe;",
                 "--roles FILE",
                 "Zeh",
+                "left_hip = \"LeftUpLeg\"",
             ],
         ),
         (
@@ -226,6 +231,98 @@ fn mistakes_of_an_import_are_explained() {
         "folders of their own",
     ];
     place.refused("data import walk --out a", 1, skeletons);
+}
+
+/// What an import finds is kept in the database, for people and programs to read.
+#[test]
+fn findings_are_kept_and_told() {
+    let (place, text) = with_recording();
+    let (hierarchy, motion) = text.split_once("Frames: ").unwrap();
+    let mut lines = motion.lines();
+    let frames: usize = lines.next().unwrap().parse().unwrap();
+    let time = lines.next().unwrap();
+    let rows: Vec<&str> = lines.collect();
+    let rest = "0 ".repeat(rows[0].split_whitespace().count());
+    let rest = format!("{rest}\n{}", rows.join("\n"));
+    let text = format!("{hierarchy}Frames: {}\n{time}\n{rest}\n", frames + 1);
+    place.write("walk/synthetic_000.bvh", text);
+
+    let made = place.done("data import walk --out a.footwork");
+    let note = "frames dropped";
+    assert!(made.err.contains(note), "{made:?}");
+    let info = place.done("data info a.footwork");
+    assert!(info.out.contains(note), "{info:?}");
+    for part in ["a.footwork", "walk"] {
+        let json = place.done(&format!("data info {part} --json"));
+        let figures: serde_json::Value = serde_json::from_str(&json.out).unwrap();
+        assert_eq!(figures["fingerprint"], fingerprint(&made.out));
+        assert_eq!(figures["roles"]["left_foot"], "LeftFoot");
+        assert!((figures["minutes"].as_f64().unwrap() - 0.5).abs() < 0.01);
+        let clip = &figures["clips"][0];
+        assert_eq!(clip["name"], "synthetic_000");
+        assert_eq!(clip["candidates"], 870);
+        assert_eq!(
+            (clip["up"].as_str(), clip["seconds"].as_f64()),
+            (Some("y"), Some(30.0))
+        );
+        assert!((clip["unit_m"].as_f64().unwrap() - 0.01).abs() < 1e-6);
+        let [mean, max] = ["mean_speed", "max_speed"].map(|key| clip[key].as_f64().unwrap());
+        assert!(0.0 < mean && mean < max && max < 8.0, "{mean} {max}");
+        assert!(clip["notes"][0].as_str().unwrap().contains(note), "{clip}");
+    }
+    let roles = place.done("data info walk --roles");
+    assert!(roles.out.starts_with("hips = \"Hips\"\n"), "{roles:?}");
+    place.write("roles.toml", roles.out);
+    place.done("data info walk --roles=roles.toml");
+    place.done("data import walk --roles roles.toml --out b.footwork");
+}
+
+#[test]
+fn options_of_an_import_settle_what_is_unclear() {
+    let (place, text) = with_recording();
+    std::fs::create_dir(place.path("walk/more")).unwrap();
+    place.write("walk/more/again.bvh", &text);
+    place.write("walk/empty.bvh", "");
+    place.refused(
+        "data info walk",
+        1,
+        &["1 of 2 files", "empty.bvh, line 1", "--skip-bad"],
+    );
+    let info = place.done("data info walk --skip-bad --recursive");
+    assert!(info.out.contains("more/again"), "{info:?}");
+    assert!(info.err.contains("1 of 3 files left out"), "{info:?}");
+    let flat = place.done("data import walk --skip-bad --out a.footwork");
+    assert!(flat.err.contains("`--recursive` reads them"), "{flat:?}");
+    place.refused(
+        "data info walk --skip-bad --up w",
+        2,
+        &["the axes are x, y, z"],
+    );
+    let turned = place.done("data info walk --skip-bad --up -y --json");
+    let figures: serde_json::Value = serde_json::from_str(&turned.out).unwrap();
+    assert_eq!(figures["clips"][0]["up"], "-y");
+
+    // Two takes, joined.
+    let (head, motion) = text.split_once("Frame Time: ").unwrap();
+    let mut rows: Vec<String> = motion.lines().map(str::to_string).collect();
+    for row in &mut rows[501..] {
+        let (x, others) = row.split_once(' ').unwrap();
+        *row = format!("{} {others}", x.parse::<f32>().unwrap() + 300.0);
+    }
+    let joined = format!("{head}Frame Time: {}\n", rows.join("\n"));
+    place.write("joined.bvh", joined);
+    let parts = &[
+        "joined.bvh",
+        "the motion jumps",
+        "after frame 500;",
+        "--trim",
+    ];
+    place.refused("data info joined.bvh", 1, parts);
+    let trimmed = place.done("data info joined.bvh --trim");
+    assert!(
+        trimmed.err.contains("trimmed to the longest piece"),
+        "{trimmed:?}"
+    );
 }
 
 #[test]

@@ -84,7 +84,7 @@ fn units_follow_from_the_legs() {
         assert_eq!(units::find(&scaled, &roles).unwrap(), unit);
     }
     let mut odd = metres.clone();
-    odd.offsets.iter_mut().for_each(|o| *o *= 8.0);
+    odd.offsets.iter_mut().for_each(|o| *o *= 5.0);
     let unit = units::find(&odd, &roles).unwrap();
     assert!((unit * units::leg(&odd, &roles) - 0.85).abs() < 1e-4);
     odd.offsets.iter_mut().for_each(|o| *o = Vec3::ZERO);

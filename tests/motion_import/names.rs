@@ -181,15 +181,26 @@ fn roles_of_every_convention() {
     }
 }
 
-#[test]
-fn unknown_skeletons_and_roles_files() {
+/// A person whose feet no name tells, and whose legs have no form to go by.
+fn with_paws() -> Skeleton {
     let mut skeleton = skeleton(&PERSON);
     skeleton.names[3] = "Paw1".to_string();
     skeleton.names[6] = "Paw2".to_string();
+    skeleton.offsets[5] = Vec3::Y;
+    skeleton
+}
+
+#[test]
+fn unknown_skeletons_and_roles_files() {
+    let skeleton = with_paws();
     let message = Roles::find(&skeleton).unwrap_err().to_string();
     assert!(message.contains("no joint found for left_foot, right_foot, left_toe, right_toe;"));
     assert!(message.contains("LeftLeg, Paw1, RightUpLeg"), "{message}");
     assert!(message.contains("roles file"), "{message}");
+    // What was found, and lines to complete.
+    let file =
+        "hips = \"Hips\"\nleft_hip = \"LeftUpLeg\"\nright_hip = \"RightUpLeg\"\nleft_foot = \"\"\n";
+    assert!(message.contains(file), "{message}");
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("roles.toml");
@@ -233,4 +244,156 @@ fn unknown_skeletons_and_roles_files() {
         assert!(message.contains(expected), "{expected} / {message}");
         assert!(message.contains("roles.toml"), "{message}");
     }
+}
+
+/// Every role of a person without a telling name, in the order of the keys.
+fn by_structure(skeleton: &Skeleton) -> Option<Vec<String>> {
+    let roles = Roles::find(skeleton).ok()?;
+    let names = roles.joints().map(|joint| skeleton.names[joint].clone());
+    Some(names.to_vec())
+}
+
+/// The person with toes, every joint renamed.
+fn renamed(name: impl Fn(usize) -> String) -> Skeleton {
+    let mut joints = PERSON.to_vec();
+    joints.insert(4, ("LeftToe", 3, Vec3::new(0.0, -0.05, 0.13)));
+    for joint in &mut joints[5..] {
+        joint.1 += usize::from(joint.1 > 3);
+    }
+    joints.insert(8, ("RightToe", 7, Vec3::new(0.0, -0.05, 0.13)));
+    for joint in &mut joints[9..] {
+        joint.1 += usize::from(joint.1 > 7);
+    }
+    let mut skeleton = skeleton(&joints);
+    for joint in 0..skeleton.joints() {
+        skeleton.names[joint] = name(joint);
+    }
+    skeleton
+}
+
+#[test]
+fn prefixes_of_programs_are_no_part_of_a_name() {
+    let plain = skeleton(&PERSON);
+    let roles = Roles::find(&plain).unwrap();
+    for prefix in [
+        "Character1_",
+        "CC_Base_",
+        "DEF-",
+        "Bip002 ",
+        "mixamorig12:",
+        "Actor 7|",
+    ] {
+        let mut prefixed = plain.clone();
+        for name in &mut prefixed.names {
+            *name = format!("{prefix}{name}");
+        }
+        assert_eq!(Roles::find(&prefixed).unwrap(), roles, "{prefix}");
+        assert!(roles.unnamed(&prefixed).is_empty(), "{prefix}");
+    }
+}
+
+#[test]
+fn hips_are_where_legs_and_arms_meet() {
+    let mut person = skeleton(&PERSON);
+    for hips in ["root", "spine", "torso_1"] {
+        person.names[0] = hips.to_string();
+        let roles = Roles::find(&person).unwrap();
+        assert_eq!(
+            (roles.hips, roles.unnamed(&person)),
+            (0, vec!["hips"]),
+            "{hips}"
+        );
+    }
+    // A joint called pelvis that carries the legs alone is not what carries the body.
+    let joints = [
+        &[("root", 0, Vec3::ZERO), ("pelvis", 0, Vec3::Y)][..],
+        &PERSON[1..],
+    ];
+    let mut joints = joints.concat();
+    for joint in &mut joints[2..] {
+        joint.1 += usize::from(joint.1 > 0);
+    }
+    (joints[2].1, joints[5].1) = (1, 1);
+    let roles = Roles::find(&skeleton(&joints)).unwrap();
+    assert_eq!(roles.hips, 0);
+}
+
+#[test]
+fn the_form_of_the_tree_tells_what_names_do_not() {
+    let roles = [0, 1, 5, 3, 7, 4, 8, 10, 13];
+    let expect = |skeleton: &Skeleton, what: &str| {
+        let expected: Vec<String> = roles.iter().map(|&j| skeleton.names[j].clone()).collect();
+        assert_eq!(by_structure(skeleton), Some(expected), "{what}");
+    };
+    // Sides by where the limbs lie: toes point forward.
+    expect(&renamed(|joint| format!("bone{joint}")), "numbers");
+    // Sides by the names, though these tell no parts and the rest pose nothing.
+    let sided = |joint: usize| match joint {
+        1..=4 | 10..=12 => format!("x{joint}_l"),
+        5..=8 => format!("x{}_r", joint - 4),
+        13..=15 => format!("x{}_r", joint - 3),
+        _ => format!("x{joint}"),
+    };
+    let mut flat = renamed(sided);
+    flat.offsets[4] = Vec3::new(0.13, 0.0, 0.0);
+    expect(&flat, "letters");
+    let initial = |joint: usize| match joint {
+        1..=4 | 10..=12 => format!("lq{joint}"),
+        5..=8 => format!("rq{}", joint - 4),
+        13..=15 => format!("rq{}", joint - 3),
+        _ => format!("q{joint}"),
+    };
+    expect(&renamed(initial), "initials");
+
+    // Fingers, eyes and a tail are no limbs.
+    let mut rich = renamed(|joint| format!("bone{joint}"));
+    for (parent, offset) in [
+        (12, Vec3::new(0.0, -0.1, 0.02)),
+        (12, Vec3::new(0.0, -0.1, -0.02)),
+        (15, Vec3::new(0.0, -0.1, 0.02)),
+        (15, Vec3::new(0.0, -0.1, -0.02)),
+        (9, Vec3::new(0.0, 0.3, 0.0)),
+        (0, Vec3::new(0.0, 0.0, -0.1)),
+    ] {
+        rich.names.push(format!("bone{}", rich.joints()));
+        rich.parents.push(Some(parent));
+        rich.offsets.push(offset);
+    }
+    expect(&rich, "fingers");
+
+    // Neither names nor the rest pose tell left from right.
+    let mut flat = renamed(|joint| format!("bone{joint}"));
+    (flat.offsets[4], flat.offsets[8]) = (Vec3::NEG_Y, Vec3::NEG_Y);
+    assert_eq!(by_structure(&flat), None);
+    // A snake.
+    let chain: Vec<_> = (0..9)
+        .map(|joint: usize| ("s", joint.saturating_sub(1), Vec3::Y))
+        .collect();
+    assert_eq!(by_structure(&skeleton(&chain)), None);
+}
+
+#[test]
+fn no_tree_takes_long() {
+    // A chain of which the last joints have two limbs each, and names that share all but the end.
+    let mut skeleton = skeleton(&[]);
+    let mut add = |parent: Option<usize>| {
+        let name = format!("{}{}", "long".repeat(500), skeleton.joints());
+        skeleton.names.push(name);
+        skeleton.parents.push(parent);
+        skeleton.offsets.push(Vec3::Y);
+        skeleton.joints() - 1
+    };
+    let mut trunk = add(None);
+    for depth in 0..3000 {
+        trunk = add(Some(trunk));
+        for _ in 0..if depth < 2850 { 0 } else { 2 } {
+            let top = add(Some(trunk));
+            let middle = add(Some(top));
+            add(Some(middle));
+        }
+    }
+    let start = std::time::Instant::now();
+    let _ = Roles::find(&skeleton);
+    let seconds = start.elapsed().as_secs_f32();
+    assert!(seconds < 2.0, "{seconds} s");
 }

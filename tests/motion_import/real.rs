@@ -43,7 +43,9 @@ fn what_is_found_agrees_with_the_manifests() {
     let Some(mocap) = recordings("") else { return };
     for (folder, above, prefix, ..) in FOLDERS {
         let listing = mocap.join(above).join("manifest.csv");
-        let listing = manifest::read(&listing).unwrap().unwrap();
+        let manifest::ManifestFile::Ours(listing) = manifest::read(&listing).unwrap() else {
+            panic!("no manifest in {above}");
+        };
         let entries = listing.iter().filter_map(|(file, entry)| {
             let file = file.strip_prefix(prefix)?;
             let path = mocap.join(folder).join(file);

@@ -1,7 +1,8 @@
 //! What is refused, and that no input panics.
 
-use super::{SMALL, parse, refusal};
+use super::{SMALL, import, parse, refusal, walking};
 use footwork::motion::bvh;
+use footwork::motion::import::ImportOptions;
 use footwork::motion::manifest;
 use footwork::motion::resample::resample;
 use proptest::prelude::*;
@@ -172,6 +173,32 @@ fn files_that_are_no_text_or_too_large() {
 
     let message = bvh::read(Path::new("absent.bvh")).unwrap_err().to_string();
     assert!(message.contains("cannot read absent.bvh"), "{message}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+    #[test]
+    fn no_damaged_person_panics(
+        cuts in proptest::collection::vec((0_usize..9_000, 0_usize..12, "[ 0-9a-zA-Z{}.:\n-]{0,6}"), 1..4),
+    ) {
+        let mut text = bvh::to_text(&walking(70)).unwrap();
+        for (start, length, patch) in cuts {
+            let start = start.min(text.len());
+            let end = (start + length).min(text.len());
+            text.replace_range(start..end, &patch);
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("walk.bvh");
+        std::fs::write(&path, text).unwrap();
+        for trim in [false, true] {
+            let options = ImportOptions { trim, ..ImportOptions::default() };
+            if let Ok(import) = import(&path, &options) {
+                let clip = &import.clips[0];
+                prop_assert!(clip.positions.iter().all(|p| p.is_finite()));
+                prop_assert!(clip.rotations.iter().all(|q| q.is_normalized()));
+            }
+        }
+    }
 }
 
 proptest! {

@@ -239,8 +239,8 @@ pub fn far_reward(
     if params.far == 3 {
         let short = (velocity - params.speed * way).length() / params.speed;
         let turned = alignment.clamp(-1.0, 1.0).acos() / PI;
-        let facing = if faces { 0.4 * (1.0 - turned) } else { 0.4 };
-        return 0.5 * (1.0 - short).max(-0.3) + facing + 0.1 / (1.0 + distance);
+        let facing = if faces { 0.55 * (1.0 - turned) } else { 0.55 };
+        return 0.4 * (1.0 - short).max(-0.3) + facing + 0.05 / (1.0 + distance);
     }
     let across = velocity - along * way;
     let short = params.speed - along;

@@ -1,5 +1,8 @@
 //! The first half of a BVH file: the tree of joints and their channels.
 
+use super::fault::{problem, shorten};
+use super::number::number;
+use super::text::is_comment;
 use crate::motion::error::{MotionError, MotionResult};
 use crate::motion::skeleton::Skeleton;
 use glam::Vec3;
@@ -22,6 +25,8 @@ pub struct Hierarchy {
     pub channels: Vec<Vec<Channel>>,
     /// Line number (from 1) of the word MOTION.
     pub end: usize,
+    /// Bytes of the text up to the end of that word.
+    pub length: usize,
 }
 
 /// A brace that is still open.
@@ -29,43 +34,6 @@ pub struct Hierarchy {
 enum Block {
     Joint(usize),
     End { joint: usize, placed: bool },
-}
-
-/// The error of this file at this line (from 1).
-pub fn problem(path: &Path, line: usize, problem: impl Into<String>) -> MotionError {
-    MotionError::Bvh {
-        path: path.to_path_buf(),
-        line,
-        problem: problem.into(),
-    }
-}
-
-/// A finite number of sane size. The bound keeps every later product of lengths finite.
-pub fn number(path: &Path, line: usize, word: &str) -> MotionResult<f32> {
-    match word.parse::<f32>() {
-        Ok(value) if value.abs() < 1e9 => Ok(value),
-        Ok(_) => Err(problem(
-            path,
-            line,
-            format!(
-                "'{word}' is no usable number: NaN, infinite or beyond 1e9; export the file again without it"
-            ),
-        )),
-        Err(_) => Err(problem(
-            path,
-            line,
-            format!("expected a number, found '{}'", shorten(word)),
-        )),
-    }
-}
-
-/// At most 40 characters of a word that may be a whole binary file, with nothing unprintable.
-pub fn shorten(word: &str) -> String {
-    let mut short: String = word.chars().take(40).flat_map(char::escape_debug).collect();
-    if word.chars().nth(40).is_some() {
-        short.push_str("...");
-    }
-    short
 }
 
 /// Reads from HIERARCHY to MOTION. The open braces are a list, not a recursion, so that no
@@ -91,6 +59,7 @@ pub fn parse(text: &str, path: &Path) -> MotionResult<Hierarchy> {
         skeleton: reader.skeleton,
         channels: reader.channels,
         end: reader.words.line,
+        length: text.len() - reader.words.rest.len(),
     })
 }
 
@@ -107,8 +76,11 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     fn start(&mut self) -> MotionResult<()> {
-        match self.words.next() {
+        match self.words.statement() {
             Some(word) if word.eq_ignore_ascii_case("HIERARCHY") => Ok(()),
+            Some("version") if self.words.rest.trim_start().starts_with("https://git-lfs") => {
+                Err(self.fault("this is Git LFS's pointer to a recording; fetch the recording itself with `git lfs pull`"))
+            }
             Some(word) => Err(self.fault(format!(
                 "a BVH file begins with HIERARCHY, this one with '{}'; is it another kind of file?",
                 shorten(word)
@@ -119,7 +91,7 @@ impl<'a> Reader<'a> {
 
     /// Takes one statement; true after MOTION.
     fn step(&mut self) -> MotionResult<bool> {
-        let Some(word) = self.words.next() else {
+        let Some(word) = self.words.statement() else {
             return Err(self.fault(format!(
                 "the file ends inside the hierarchy, {} braces still open and no MOTION; it is truncated",
                 self.open.len()
@@ -130,9 +102,12 @@ impl<'a> Reader<'a> {
                 "a second ROOT: several characters in one file are not supported; export one file for each",
             )),
             ("ROOT", None) | ("JOINT", Some(Block::Joint(_))) => self.joint().map(|()| false),
-            ("END", Some(Block::Joint(joint))) => self.end_site(joint).map(|()| false),
+            ("END" | "ENDSITE" | "END_SITE", Some(Block::Joint(joint))) => {
+                self.end_site(joint).map(|()| false)
+            }
             ("OFFSET", Some(block)) => self.offset(block).map(|()| false),
             ("CHANNELS", Some(Block::Joint(joint))) => self.take_channels(joint).map(|()| false),
+            ("CHANNELS", Some(Block::End { .. })) => self.no_channels().map(|()| false),
             ("}", Some(block)) => self.close(block).map(|()| false),
             ("}", None) => Err(self.fault("'}' without a '{' before it; the braces do not balance")),
             ("MOTION", None) if self.skeleton.joints() > 0 => Ok(true),
@@ -232,14 +207,7 @@ impl<'a> Reader<'a> {
         if !self.channels[joint].is_empty() {
             return Err(self.fault("a second CHANNELS for one joint"));
         }
-        let word = self.words.next().unwrap_or("");
-        let count: usize = word.parse().map_err(|_| {
-            self.fault(format!(
-                "expected the number of channels, found '{}'",
-                shorten(word)
-            ))
-        })?;
-        for _ in 0..count {
+        for _ in 0..self.count()? {
             let channel = self.channel()?;
             let twice = self.channels[joint].contains(&channel);
             if twice && matches!(channel, Channel::Position(_)) {
@@ -248,6 +216,24 @@ impl<'a> Reader<'a> {
             self.channels[joint].push(channel);
         }
         Ok(())
+    }
+
+    fn count(&mut self) -> MotionResult<usize> {
+        let word = self.words.next().unwrap_or("");
+        word.parse().map_err(|_| {
+            self.fault(format!(
+                "expected the number of channels, found '{}'",
+                shorten(word)
+            ))
+        })
+    }
+
+    /// The `CHANNELS 0` that some programs give to an End Site too.
+    fn no_channels(&mut self) -> MotionResult<()> {
+        match self.count()? {
+            0 => Ok(()),
+            _ => Err(self.fault("an End Site with channels: only joints move; make it a JOINT")),
+        }
     }
 
     fn channel(&mut self) -> MotionResult<Channel> {
@@ -314,11 +300,27 @@ impl<'a> Words<'a> {
         Some(word)
     }
 
-    /// The rest of the line up to a brace: some programs put spaces in joint names.
+    /// The next word that is no comment.
+    fn statement(&mut self) -> Option<&'a str> {
+        loop {
+            let word = self.next()?;
+            if !is_comment(word) {
+                return Some(word);
+            }
+            self.rest = self.rest.find('\n').map_or("", |end| &self.rest[end..]);
+        }
+    }
+
+    /// The rest of the line up to a brace: some programs put spaces in joint names, others quotes
+    /// around them.
     fn name(&mut self) -> String {
         let length = self.rest.find(['\n', '{', '}']).unwrap_or(self.rest.len());
         let (name, rest) = self.rest.split_at(length);
         self.rest = rest;
-        name.split_whitespace().collect::<Vec<_>>().join(" ")
+        let name = name.split_whitespace().collect::<Vec<_>>().join(" ");
+        let quoted = name
+            .strip_prefix('"')
+            .and_then(|name| name.strip_suffix('"'));
+        quoted.map_or(name.clone(), str::to_string)
     }
 }

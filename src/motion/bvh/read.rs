@@ -1,8 +1,10 @@
 //! From the text of a BVH file to a recording.
 
-use super::Recording;
-use super::hierarchy::{self, Channel, Hierarchy, problem};
+use super::fault::problem;
+use super::hierarchy::{self, Channel, Hierarchy};
+use super::text::{clean, decode};
 use super::values::{self, Values};
+use super::{Recording, Slide};
 use crate::motion::error::{MotionError, MotionResult};
 use glam::{Quat, Vec3};
 use std::io::Read;
@@ -13,9 +15,6 @@ pub const MAX_BYTES: u64 = 1 << 30;
 
 /// Frames times joints that one file may have (about 0.5 GB of rotations).
 pub const MAX_ROTATIONS: usize = 1 << 25;
-
-/// A bone may change its length by this fraction of the longest bone and still count as rigid.
-const SLACK: f32 = 0.05;
 
 /// Reads a BVH file. Lengths stay in the file's unit, the rate is the file's own.
 ///
@@ -41,26 +40,16 @@ pub fn read(path: &Path) -> MotionResult<Recording> {
     if bytes.len() as u64 > MAX_BYTES {
         return Err(too_large());
     }
-    let valid = match std::str::from_utf8(&bytes) {
-        Ok(text) => return parse(text, path),
-        Err(error) => error.valid_up_to(),
-    };
-    let line = 1 + bytes[..valid].iter().filter(|&&b| b == b'\n').count();
-    Err(problem(
-        path,
-        line,
-        "bytes that are not UTF-8: a binary file, or joint names in another encoding; a BVH file is plain text",
-    ))
+    parse(&decode(&bytes, path)?, path)
 }
 
 /// Reads the text of a BVH file; `path` is only for messages.
 ///
 /// Channels are applied in the file's order. A position channel replaces its component of the
-/// OFFSET. On joints other than the root, positions that stay put (within 5 % of the longest
-/// bone) give the bone as their mean. A root with a single child that does move against it (a
-/// "Reference" above the hips) is folded into that child. Any other moving bone is an error.
+/// OFFSET; on joints other than the root the mean of all frames is the bone. Where those of all
+/// joints below the root are zero throughout, while OFFSETs are not, the OFFSETs hold.
 pub fn parse(text: &str, path: &Path) -> MotionResult<Recording> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = &*clean(text);
     let hierarchy = hierarchy::parse(text, path)?;
     let end = hierarchy.end;
     let width = hierarchy.channels.iter().map(Vec::len).sum();
@@ -68,7 +57,7 @@ pub fn parse(text: &str, path: &Path) -> MotionResult<Recording> {
         let no_channels = "no joint has CHANNELS: the file holds a skeleton without motion";
         return Err(problem(path, end, no_channels));
     }
-    let values = values::parse(text, path, end, width)?;
+    let values = values::parse(&text[hierarchy.length..], path, end, width)?;
     if values.frames.saturating_mul(hierarchy.channels.len()) > MAX_ROTATIONS {
         let too_many = format!(
             "{} frames of {} joints are too many for one file; cut it into shorter recordings",
@@ -77,67 +66,70 @@ pub fn parse(text: &str, path: &Path) -> MotionResult<Recording> {
         );
         return Err(problem(path, end, too_many));
     }
-    let motion = Motion { hierarchy, values };
-    motion
-        .into_recording()
-        .map_err(|what| problem(path, end, what))
+    let motion = Motion {
+        offsets_hold: offsets_hold(&hierarchy, &values, width),
+        hierarchy,
+        values,
+    };
+    Ok(motion.into_recording())
+}
+
+/// Whether no position channel below the root ever says anything, while OFFSETs do.
+fn offsets_hold(hierarchy: &Hierarchy, values: &Values, width: usize) -> bool {
+    let channels = hierarchy.channels.iter().enumerate();
+    let channels = channels.flat_map(|(joint, channels)| channels.iter().map(move |c| (joint, c)));
+    let below = channels
+        .enumerate()
+        .filter(|(_, (joint, channel))| *joint > 0 && matches!(channel, Channel::Position(_)));
+    let (columns, joints): (Vec<usize>, Vec<usize>) =
+        below.map(|(column, (joint, _))| (column, joint)).unzip();
+    let offsets = &hierarchy.skeleton.offsets;
+    joints.iter().any(|&joint| offsets[joint] != Vec3::ZERO)
+        && values
+            .numbers
+            .chunks_exact(width)
+            .all(|frame| columns.iter().all(|&column| frame[column] == 0.0))
 }
 
 /// A file that is well formed; what is left is to see what its numbers mean.
 struct Motion {
     hierarchy: Hierarchy,
     values: Values,
+    /// Whether position channels below the root mean nothing.
+    offsets_hold: bool,
 }
 
 impl Motion {
-    fn into_recording(self) -> Result<Recording, String> {
-        let rigid = self.bones();
-        let longest = rigid[1..].iter().map(|b| b.0.length()).fold(0.0, f32::max);
-        let moving: Vec<usize> = (1..rigid.len())
-            .filter(|&joint| rigid[joint].1 > SLACK * longest)
-            .collect();
-        let slides = if moving.is_empty() {
-            None
-        } else if moving == [1] && !self.hierarchy.skeleton.parents[2..].contains(&Some(0)) {
-            Some(self.positions(1))
-        } else {
-            let joint = moving[moving.len().min(2) - 1];
-            return Err(format!(
-                "the joint '{}' moves by {} against its parent; bones must keep their length: export rotations only below the root",
-                self.hierarchy.skeleton.names[joint], rigid[joint].1
-            ));
-        };
+    fn into_recording(self) -> Recording {
+        let (bones, slides) = self.bones();
         let mut recording = Recording {
             positions: self.positions(0),
             rotations: self.rotations(),
+            slides,
             rate: self.values.rate,
             skeleton: self.hierarchy.skeleton,
         };
-        let bones = rigid.into_iter().map(|bone| bone.0);
-        recording.skeleton.offsets = bones.collect();
-        match slides {
-            Some(slides) => Ok(fold_root(recording, &slides)),
-            None => Ok(recording),
-        }
+        recording.skeleton.offsets = bones;
+        recording
     }
 
-    /// Each joint's mean offset and the farthest that any frame strays from it.
-    fn bones(&self) -> Vec<(Vec3, f32)> {
-        let channels = self.hierarchy.channels.iter().enumerate();
-        let bone = |(joint, channels): (usize, &Vec<Channel>)| {
-            let fixed = self.hierarchy.skeleton.offsets[joint];
-            if joint == 0 || !channels.iter().any(|c| matches!(c, Channel::Position(_))) {
-                return (fixed, 0.0);
+    /// Each joint's mean offset, and the joints whose offset is not the same in all frames.
+    fn bones(&self) -> (Vec<Vec3>, Vec<Slide>) {
+        let (mut bones, mut slides) = (self.hierarchy.skeleton.offsets.clone(), Vec::new());
+        for (joint, channels) in self.hierarchy.channels.iter().enumerate().skip(1) {
+            if self.offsets_hold || !channels.iter().any(|c| matches!(c, Channel::Position(_))) {
+                continue;
             }
             let positions = self.positions(joint);
             // Summed as differences: a bone that never moves comes out exactly.
             let first = positions[0];
             let drift: Vec3 = positions.iter().map(|&p| p - first).sum();
-            let mean = first + drift / positions.len() as f32;
-            let strays = positions.iter().map(|p| p.distance(mean));
-            (mean, strays.fold(0.0, f32::max))
-        };
-        channels.map(bone).collect()
+            bones[joint] = first + drift / positions.len() as f32;
+            if positions.iter().any(|&p| p != first) {
+                slides.push(Slide { joint, positions });
+            }
+        }
+        (bones, slides)
     }
 
     /// A joint's offset from its parent, frame by frame; for the root, its position.
@@ -187,27 +179,4 @@ fn turn(channel: Channel, degrees: f32) -> Quat {
         Channel::Rotation(_) => Quat::from_rotation_z(angle),
         Channel::Position(_) => Quat::IDENTITY,
     }
-}
-
-/// Takes joint 0 away and makes its only child, which moves by `slides` against it, the root.
-fn fold_root(recording: Recording, slides: &[Vec3]) -> Recording {
-    let mut folded = recording.clone();
-    let joints = recording.skeleton.joints();
-    folded.rotations.clear();
-    for (frame, &slide) in slides.iter().enumerate() {
-        let pose = recording.pose(frame);
-        folded.positions[frame] += pose[0] * slide;
-        folded.rotations.push((pose[0] * pose[1]).normalize());
-        folded.rotations.extend(&pose[2..joints]);
-    }
-    let skeleton = &mut folded.skeleton;
-    skeleton.names.remove(0);
-    skeleton.offsets.remove(0);
-    skeleton.parents.remove(0);
-    for parent in &mut skeleton.parents {
-        *parent = parent.and_then(|parent| parent.checked_sub(1));
-    }
-    skeleton.ends.retain(|end| end.0 > 0);
-    skeleton.ends.iter_mut().for_each(|end| end.0 -= 1);
-    folded
 }

@@ -1,7 +1,9 @@
 //! The second half of a BVH file: how many frames, how fast, and their numbers.
 
-use super::hierarchy::{number, problem, shorten};
-use crate::motion::error::MotionResult;
+use super::fault::{problem, shorten};
+use super::number::number;
+use super::text::is_comment;
+use crate::motion::error::{MotionError, MotionResult};
 use std::path::Path;
 
 /// Rates (Hz) outside of this are a mistake in the file: the import could neither thin them
@@ -16,43 +18,31 @@ pub struct Values {
     pub numbers: Vec<f32>,
 }
 
-/// Reads what follows line `after` (from 1), the one that says MOTION. `width` is how many
+/// Reads what follows the word MOTION, which stands in line `line` (from 1). `width` is how many
 /// numbers make a frame. They may be wrapped over lines at will. Memory grows with the numbers
 /// that are there, never with the number of frames that the file claims.
-pub fn parse(text: &str, path: &Path, after: usize, width: usize) -> MotionResult<Values> {
-    let mut lines = (1..).zip(text.lines()).skip(after);
-    let mut header = |key: &str| {
-        let (line, text) = lines
-            .by_ref()
-            .find(|(_, text)| !text.trim().is_empty())
-            .ok_or_else(|| {
-                problem(
-                    path,
-                    after,
-                    format!("the file ends before '{key}:'; it is truncated"),
-                )
-            })?;
-        match text.split_once(':') {
-            Some((found, value)) if found.trim().eq_ignore_ascii_case(key) => {
-                Ok((line, value.trim()))
-            }
-            _ => Err(problem(
-                path,
-                line,
-                format!("expected '{key}:', found '{}'", shorten(text.trim())),
-            )),
-        }
+pub fn parse(text: &str, path: &Path, line: usize, width: usize) -> MotionResult<Values> {
+    let mut header = Header {
+        rest: text,
+        path,
+        line,
     };
-    let (frames_line, frames) = header("Frames")?;
-    let (time_line, time) = header("Frame Time")?;
-    let frames = count(path, frames_line, frames)?;
-    let rate = rate(path, time_line, time)?;
+    let frames = header.value("Frames")?;
+    let frames = count(path, header.line, frames)?;
+    let time = header.value("Frame Time")?;
+    let rate = rate(path, header.line, time)?;
 
     let mut numbers = Vec::new();
-    let mut last = time_line;
-    for (line, text) in lines {
-        for word in text.split_ascii_whitespace() {
-            numbers.push(number(path, line, word)?);
+    let mut last = header.line;
+    for (line, text) in (header.line..).zip(header.rest.lines()) {
+        let words = text.split_ascii_whitespace();
+        for word in words.take_while(|word| !is_comment(word)) {
+            let is_last =
+                || header.rest.as_bytes().as_ptr_range().end == word.as_bytes().as_ptr_range().end;
+            numbers.push(number(path, line, word).map_err(|error| match is_last() {
+                true => truncated(path, line, word),
+                false => error,
+            })?);
             last = line;
         }
     }
@@ -64,8 +54,79 @@ pub fn parse(text: &str, path: &Path, after: usize, width: usize) -> MotionResul
     })
 }
 
+/// The two lines between MOTION and the numbers, however they are broken.
+struct Header<'a> {
+    /// What has not been read yet.
+    rest: &'a str,
+    path: &'a Path,
+    /// Line (from 1) of what was read last.
+    line: usize,
+}
+
+impl<'a> Header<'a> {
+    /// Takes a key, a colon if there is one, and the word that follows.
+    fn value(&mut self, key: &str) -> MotionResult<&'a str> {
+        let before = self.line;
+        self.skip_blank();
+        if self.rest.is_empty() {
+            let what = format!("the file ends before '{key}:'; it is truncated");
+            return Err(problem(self.path, before, what));
+        }
+        let Some(rest) = after_key(self.rest, key) else {
+            let found = self.rest.lines().next().unwrap_or_default();
+            let what = format!("expected '{key}:', found '{}'", shorten(found.trim()));
+            return Err(problem(self.path, self.line, what));
+        };
+        self.rest = rest;
+        self.skip_blank();
+        let end = self.rest.find(char::is_whitespace);
+        let (word, rest) = self.rest.split_at(end.unwrap_or(self.rest.len()));
+        self.rest = rest;
+        Ok(word)
+    }
+
+    fn skip_blank(&mut self) {
+        loop {
+            let rest = self.rest.trim_start();
+            let skipped = &self.rest[..self.rest.len() - rest.len()];
+            self.line += skipped.matches('\n').count();
+            self.rest = rest;
+            if !is_comment(rest) {
+                return;
+            }
+            self.rest = rest.find('\n').map_or("", |end| &rest[end..]);
+        }
+    }
+}
+
+/// What stands behind a key and its colon. The case does not matter, nor do blanks within.
+fn after_key<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+    let mut rest = text;
+    for letter in key.chars() {
+        rest = match letter {
+            ' ' => rest.trim_start(),
+            _ => rest.strip_prefix(|c: char| c.eq_ignore_ascii_case(&letter))?,
+        };
+    }
+    let rest = rest.trim_start();
+    Some(rest.strip_prefix(':').unwrap_or(rest))
+}
+
+fn truncated(path: &Path, line: usize, word: &str) -> MotionError {
+    let word = shorten(word);
+    problem(
+        path,
+        line,
+        format!("the file ends with '{word}', which is no number; it is truncated"),
+    )
+}
+
 fn count(path: &Path, line: usize, text: &str) -> MotionResult<usize> {
-    match text.parse() {
+    // Some programs count in floating point.
+    let whole = text
+        .split_once('.')
+        .filter(|(_, part)| part.bytes().all(|b| b == b'0'));
+    match whole.map_or(text, |(whole, _)| whole).parse() {
         Ok(0) => Err(problem(path, line, "zero frames: there is no motion in it")),
         Ok(frames) => Ok(frames),
         Err(_) => Err(problem(

@@ -59,6 +59,9 @@ pub enum MotionListError {
         /// What is wrong with it.
         problem: UnusableClip,
     },
+    /// A recording that no list names and that cannot be imported; the error names it.
+    #[error(transparent)]
+    Recording(motion::MotionError),
     /// Motions that do not make a library.
     #[error(transparent)]
     Library(#[from] MotionLibraryError),

@@ -2,6 +2,7 @@
 
 use super::error::{MotionListError, Result, UnusableClip};
 use super::listed::{ListedClip, MotionList};
+use crate::motion::files::is_hidden;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -69,7 +70,8 @@ pub fn find(folder: &Path, file: &Path) -> std::result::Result<PathBuf, Unusable
 fn recordings(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     let files = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
     let mut files = files.collect::<std::io::Result<Vec<PathBuf>>>()?;
-    files.retain(|file| (is_bvh(file) || is_text(file)) && file.is_file());
+    let is_recording = |file: &PathBuf| is_bvh(file) || is_text(file);
+    files.retain(|file| is_recording(file) && !is_hidden(file) && file.is_file());
     files.sort();
     Ok(files)
 }

@@ -76,6 +76,9 @@ impl MotionList {
                 Err(UnusableClip::Short { clip, frames, .. }) if self.skip_short => {
                     short.push(format!("{clip} ({frames})"));
                 }
+                Err(UnusableClip::Motion(error)) if clip.line.is_none() => {
+                    return Err(MotionListError::Recording(error));
+                }
                 Err(problem) => {
                     let place = self.place(clip);
                     return Err(MotionListError::Clip { place, problem });

@@ -4,6 +4,7 @@ use crate::env::EnvBatch;
 use crate::env::humanoid::punch::evaluate::BOXING;
 use crate::env::humanoid::recorded::demonstrations;
 use crate::gpu::Device;
+use crate::motion::import::ImportOptions;
 use crate::motion::synthetic;
 use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
@@ -49,9 +50,13 @@ pub fn load(
     };
     let list = MotionList::read(path, config.data_folder.as_deref())?;
     let options = MotionListOptions {
+        import: ImportOptions {
+            unit_m: config.unit_m,
+            roles: config.roles.clone(),
+            ..ImportOptions::default()
+        },
         ground: config.ground,
         min_frames: MIN_FRAMES,
-        ..MotionListOptions::default()
     };
     let loaded = list.load(model, &options)?;
     let mut notes = loaded.library.notes.clone();
