@@ -49,9 +49,9 @@ pub enum MotionError {
          lines in a roles file, and import with `footwork data import --roles FILE`:\n\n{file}"
     )]
     MissingRoles {
-        missing: String,
-        joints: String,
-        file: String,
+        missing: Box<str>,
+        joints: Box<str>,
+        file: Box<str>,
     },
 
     #[error(

@@ -63,7 +63,7 @@ pub fn find(path: &Path, recursive: bool) -> MotionResult<BvhFiles> {
     let passed_over: usize = below.iter().map(|(_, files)| files.len()).sum();
     let names: Vec<String> = below.iter().map(|(folder, _)| name(folder)).collect();
     let note = format!(
-        "{passed_over} .bvh files in sub-folders were not read ({}); `--recursive` reads them",
+        "recordings in sub-folders were not read: {passed_over} in {}; `--recursive` reads them",
         listed(&names)
     );
     Ok(BvhFiles {

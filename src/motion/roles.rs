@@ -91,9 +91,10 @@ impl Roles {
                 missing: missing
                     .map(|role| ROLES[role])
                     .collect::<Vec<_>>()
-                    .join(", "),
-                joints: skeleton.names.join(", "),
-                file: file(&given, skeleton),
+                    .join(", ")
+                    .into(),
+                joints: skeleton.names.join(", ").into(),
+                file: file(&given, skeleton).into(),
             });
         };
         let roles = Roles::of(joints);

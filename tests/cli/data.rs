@@ -209,6 +209,17 @@ fn mistakes_of_an_import_are_explained() {
         1,
         &[legs, "--unit METRES"],
     );
+    place.refused(
+        "train imitate --device cpu --data walk --unit 5 --out run",
+        1,
+        &[legs],
+    );
+    place.refused("sim --clip walk --out strips --unit 5", 1, &[legs]);
+    place.refused(
+        "train plane --device cpu --data walk --unit 5 --out run",
+        2,
+        &["takes no motion list"],
+    );
     for (roles, part) in [
         ("left_fot = \"LeftFoot\"", "did you mean 'left_foot'?"),
         ("left_foot = \"LeftFoo\"", "did you mean 'LeftFoot'?"),

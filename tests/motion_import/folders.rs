@@ -41,7 +41,7 @@ fn sub_folders_are_mentioned_or_read() {
     assert_eq!(names(&flat), ["walk"]);
     assert_eq!(
         flat.notes,
-        ["3 .bvh files in sub-folders were not read (a, b); `--recursive` reads them"]
+        ["recordings in sub-folders were not read: 3 in a, b; `--recursive` reads them"]
     );
     let recursive = ImportOptions {
         recursive: true,
