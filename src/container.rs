@@ -4,6 +4,7 @@
 //! (u32), CRC-32 of the rest (u32), length of the header (u64), header, arrays. Files are
 //! written beside their place and renamed: whole or not at all.
 
+use crate::input_file;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -320,6 +321,9 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     })
 }
 
+/// Bytes of the largest file: hours of motion, millions of parameters.
+const MAX_BYTES: u64 = 1 << 36;
+
 /// How names of files begin that are being written.
 pub const UNFINISHED: &str = ".footwork-";
 
@@ -390,7 +394,7 @@ pub fn save<H: Serialize>(
 /// # Errors
 /// See [`StoreError`].
 pub fn load<H: DeserializeOwned>(path: &Path, format: Format) -> Result<(H, Arrays), StoreError> {
-    let bytes = std::fs::read(path).map_err(|error| StoreError::Read {
+    let bytes = input_file::bytes(path, MAX_BYTES).map_err(|error| StoreError::Read {
         path: path.to_path_buf(),
         error,
     })?;

@@ -58,7 +58,7 @@
 //! - `view`, `viewer`: scenes and the renderer that draws them; windows (`viewer`);
 //! - `bench`: what each device makes of each stage (`report` and `train`);
 //! - [`report`]: tables; pictures and TensorBoard events (feature `report`);
-//! - [`container`]: the file format of databases and checkpoints.
+//! - [`container`]: the file format of databases and checkpoints; [`input_file`]: files that users name.
 //!
 //! # Features
 //!
@@ -75,6 +75,7 @@ pub mod container;
 #[cfg(feature = "train")]
 pub mod env;
 pub mod gpu;
+pub mod input_file;
 pub mod kernels;
 pub mod matching;
 pub mod motion;

@@ -81,6 +81,24 @@ struct Header {
     frames: usize,
 }
 
+/// Bones, m, and other numbers of a database are smaller.
+const LONGEST_BONE: f32 = 100.0;
+const MOST: f32 = 1e9;
+
+impl Header {
+    /// Whether all its numbers are such as motion has.
+    fn is_plausible(&self) -> bool {
+        let ends = self.skeleton.ends.iter().map(|(_, offset)| offset);
+        let mut bones = self.skeleton.offsets.iter().chain(ends);
+        let weights = self.weights.all();
+        let Normalisation { mean, scale } = &self.normalisation;
+        bones.all(|bone| bone.length() <= LONGEST_BONE)
+            && weights.iter().all(|weight| (0.0..=MOST).contains(weight))
+            && mean.iter().all(|mean| mean.abs() <= MOST)
+            && scale.iter().all(|scale| *scale >= 0.0 && *scale <= MOST)
+    }
+}
+
 /// No clip has a frame whose next second is known.
 #[derive(Debug, thiserror::Error)]
 #[error(
@@ -304,6 +322,9 @@ impl Database {
         if !header.skeleton.is_tree() || !header.roles.joints().iter().all(|&role| role < joints) {
             return Err(damaged("its skeleton is no tree of joints"));
         }
+        if !header.is_plausible() {
+            return Err(damaged("its header has numbers that no motion has"));
+        }
         if rotations.len() != frames * joints {
             return Err(damaged("skeleton and rotations do not fit together"));
         }
@@ -313,11 +334,11 @@ impl Database {
             hips.as_flattened(),
             rotations.as_flattened(),
         ];
-        if !numbers
-            .iter()
-            .all(|numbers| numbers.iter().all(|number| number.is_finite()))
-        {
-            return Err(damaged("it has numbers that are not finite"));
+        let most = |numbers: &&[f32]| numbers.iter().all(|number| number.abs() <= MOST);
+        if !numbers.iter().all(most) {
+            return Err(damaged(
+                "it has numbers that are not finite, or larger than any of motion",
+            ));
         }
         let hips = hips.into_iter().map(Vec3::from_array).collect();
         let rotations = rotations.into_iter().map(Quat::from_array).collect();

@@ -1,8 +1,12 @@
 //! `manifest.csv`: what is known about the recordings of a folder.
 
 use super::error::{MotionError, MotionResult};
+use crate::input_file;
 use std::collections::HashMap;
 use std::path::Path;
+
+/// Bytes of the longest manifest.
+const MAX_BYTES: u64 = 1 << 26;
 
 /// What a manifest says about one recording; absent or empty columns leave the default.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,7 +45,7 @@ pub enum ManifestFile {
 /// # Errors
 /// A file that cannot be read, and mistakes in a manifest, with the line.
 pub fn read(path: &Path) -> MotionResult<ManifestFile> {
-    match std::fs::read(path) {
+    match input_file::bytes(path, MAX_BYTES) {
         Ok(bytes) => match std::str::from_utf8(&bytes) {
             Ok(text) if is_manifest(text) => parse(text, path).map(ManifestFile::Ours),
             _ => Ok(ManifestFile::Stranger),

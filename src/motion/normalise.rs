@@ -35,6 +35,11 @@ impl Weights {
         ..Weights::PAPER
     };
 
+    /// The weight of each group of dimensions.
+    pub fn all(&self) -> [f32; GROUPS] {
+        std::array::from_fn(|group| self.of(group))
+    }
+
     fn of(&self, group: usize) -> f32 {
         match group {
             0 | 1 => self.foot_position,

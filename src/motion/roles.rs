@@ -5,7 +5,11 @@ pub mod structure;
 
 use super::error::{MotionError, MotionResult};
 use super::skeleton::Skeleton;
+use crate::input_file;
 use std::path::Path;
+
+/// Bytes of the longest roles file.
+const MAX_BYTES: u64 = 1 << 24;
 
 /// Joint indices of the parts that features, playback and mirroring need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -59,7 +63,7 @@ impl Roles {
     /// Errors: an unreadable file, unknown keys, unknown joints (each names the nearest known).
     pub fn read(path: &Path, skeleton: &Skeleton) -> MotionResult<Roles> {
         let text =
-            std::fs::read_to_string(path).map_err(|error| format!("cannot be read: {error}"));
+            input_file::text(path, MAX_BYTES).map_err(|error| format!("cannot be read: {error}"));
         let given = text.and_then(|text| given(&text, skeleton));
         let given = given.map_err(|problem| MotionError::RolesFile {
             path: path.to_path_buf(),

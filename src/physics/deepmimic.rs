@@ -9,6 +9,7 @@ use super::kinematics::{quaternion, store};
 use super::model::{Joint, JointKind, Model};
 use super::motion_clip::{MotionClip, between};
 use super::retarget::{self, RetargetError, joint};
+use crate::input_file;
 use crate::motion::RATE;
 use glam::{Quat, Vec3};
 use serde::Deserialize;
@@ -120,8 +121,11 @@ struct Keyframe {
     q: Vec<f32>,
 }
 
+/// Bytes of the largest recording: hours of motion.
+const MAX_BYTES: u64 = 1 << 28;
+
 fn keyframes(path: &Path, model: &Model) -> Result<Vec<Keyframe>, DeepMimicError> {
-    let text = std::fs::read_to_string(path).map_err(|error| DeepMimicError::Read {
+    let text = input_file::text(path, MAX_BYTES).map_err(|error| DeepMimicError::Read {
         path: path.to_path_buf(),
         error,
     })?;

@@ -4,6 +4,7 @@
 //! change is a TOML table laid over the preset's: keys that the preset does not have are refused.
 
 use crate::gpu::Choice;
+use crate::input_file;
 use crate::nn::network::NetworkError;
 use crate::rl::amp::Amp;
 use crate::rl::ppo::Ppo;
@@ -387,8 +388,11 @@ impl Config {
     }
 }
 
+/// Bytes of the longest configuration.
+const MAX_BYTES: u64 = 1 << 24;
+
 fn read(path: &Path) -> Result<String, ConfigError> {
-    std::fs::read_to_string(path).map_err(|error| ConfigError::Read {
+    input_file::text(path, MAX_BYTES).map_err(|error| ConfigError::Read {
         path: path.to_path_buf(),
         error,
     })

@@ -1,6 +1,7 @@
 //! The metrics of an update: a line of `metrics.jsonl`.
 
 use super::evaluation::Evaluation;
+use crate::input_file;
 use crate::rl::Iteration;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
@@ -94,6 +95,9 @@ pub struct KnownMetrics {
     pub damaged: Vec<usize>,
 }
 
+/// Bytes of the longest metrics: millions of updates.
+const MAX_BYTES: u64 = 1 << 34;
+
 /// Reads a `metrics.jsonl` up to a number of steps. A line that is no update costs that line.
 ///
 /// # Errors
@@ -103,7 +107,7 @@ pub fn read(path: &Path, up_to: u64) -> Result<KnownMetrics> {
     if !path.exists() {
         return Ok(known);
     }
-    let bytes = std::fs::read(path).with_context(|| {
+    let bytes = input_file::bytes(path, MAX_BYTES).with_context(|| {
         format!(
             "cannot read {}; move it away to go on without it",
             path.display()

@@ -113,6 +113,18 @@ fn databases_that_are_none_are_refused() {
             "do not fit together",
         ),
         (
+            change(&good, "/header/skeleton/offsets/3/1", json!(1e300)),
+            "numbers that no motion has",
+        ),
+        (
+            change(&good, "/header/weights/foot_position", json!(-1.0)),
+            "numbers that no motion has",
+        ),
+        (
+            change(&good, "/header/normalisation/scale/2", json!(1e30)),
+            "numbers that no motion has",
+        ),
+        (
             change(&good, "/header/clips", json!([])),
             "do not fit together",
         ),

@@ -307,3 +307,24 @@ fn a_device_that_is_not_there_is_refused_before_anything_is_made() {
         assert_eq!(place.list(), before);
     }
 }
+
+/// What is no file might never end.
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_no_files() {
+    let place = Place::with_run();
+    let made = std::process::Command::new("mkfifo")
+        .arg(place.path("pipe.bvh"))
+        .status();
+    assert!(made.unwrap().success());
+    for words in [
+        "data info pipe.bvh",
+        "data info /dev/zero",
+        "train plane --config /dev/zero",
+        "train imitate --data pipe.bvh --out new",
+        "eval run --data /dev/zero",
+    ] {
+        let code = if words.contains("--config") { 2 } else { 1 };
+        place.refused(words, code, &["no regular file"]);
+    }
+}

@@ -5,6 +5,7 @@ use super::hierarchy::{self, Channel, Hierarchy};
 use super::text::{clean, decode};
 use super::values::{self, Values};
 use super::{Recording, Slide};
+use crate::input_file;
 use crate::motion::error::{MotionError, MotionResult};
 use glam::{Quat, Vec3};
 use std::io::Read;
@@ -28,11 +29,11 @@ pub fn read(path: &Path) -> MotionResult<Recording> {
         path: path.to_path_buf(),
         limit: MAX_BYTES,
     };
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    if file.metadata().map_err(unreadable)?.len() > MAX_BYTES {
+    if path.metadata().map_err(unreadable)?.len() > MAX_BYTES {
         return Err(too_large());
     }
-    // A device or a growing file may give more than it said.
+    let file = input_file::open(path, MAX_BYTES).map_err(unreadable)?;
+    // A growing file may give more than it said.
     let mut bytes = Vec::new();
     file.take(MAX_BYTES + 1)
         .read_to_end(&mut bytes)

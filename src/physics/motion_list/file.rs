@@ -3,6 +3,7 @@
 use super::error::{MotionListError, Result, UnusableClip};
 use super::folder::find;
 use super::listed::{ListedClip, MotionList};
+use crate::input_file;
 use serde::Deserialize;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -33,9 +34,12 @@ fn one() -> f32 {
     1.0
 }
 
+/// Bytes of the longest list.
+const MAX_BYTES: u64 = 1 << 24;
+
 /// Reads a list whose files are in `folder`.
 pub fn read(path: &Path, folder: &Path) -> Result<MotionList> {
-    let text = std::fs::read_to_string(path).map_err(|error| MotionListError::Read {
+    let text = input_file::text(path, MAX_BYTES).map_err(|error| MotionListError::Read {
         path: path.to_path_buf(),
         error,
     })?;
