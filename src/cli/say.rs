@@ -19,10 +19,7 @@ macro_rules! show {
 
 /// A line on stderr. Nothing depends on whether anybody reads it.
 macro_rules! tell {
-    ($($words:tt)*) => {{
-        use std::io::Write;
-        let _ = writeln!(std::io::stderr(), $($words)*);
-    }};
+    ($($words:tt)*) => { $crate::cli::say::report(&format!($($words)*)) };
 }
 
 pub(crate) use {say, show, tell};
@@ -41,6 +38,37 @@ pub fn print(text: Arguments) {
     }
 }
 
+/// Characters of the longest word of a message: a path fits, a damaged file's line does not.
+const LONGEST: usize = 400;
+/// Characters that are left of a longer one.
+const LEFT: usize = 60;
+
+/// Prints a message to stderr.
+pub fn report(message: &str) {
+    let _ = writeln!(io::stderr(), "{}", printable(message));
+}
+
+/// A message as a terminal may show it: what files hold is quoted in messages, and may be anything.
+fn printable(message: &str) -> String {
+    let words = message.split_inclusive(char::is_whitespace).map(|word| {
+        let mut word = word.to_string();
+        if word.chars().count() > LONGEST {
+            word = word.chars().take(LEFT).chain("...".chars()).collect();
+        }
+        word
+    });
+    let shown = words.collect::<String>();
+    let shown = shown.chars().flat_map(|character| {
+        let plain = !character.is_control() || character == '\n' || character == '\t';
+        let escaped = (!plain).then(|| character.escape_unicode());
+        plain
+            .then_some(character)
+            .into_iter()
+            .chain(escaped.into_iter().flatten())
+    });
+    shown.collect()
+}
+
 /// Whether all that was said could be printed, as far as anybody wanted it.
 ///
 /// # Errors
@@ -50,5 +78,17 @@ pub fn printed() -> anyhow::Result<()> {
     match failure.take() {
         None => Ok(()),
         Some(error) => Err(anyhow::anyhow!("cannot write to standard output: {error}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_are_fit_for_a_terminal() {
+        assert_eq!(printable("a \u{1b}[31mb\nc"), "a \\u{1b}[31mb\nc");
+        let long = format!("key {} is", "x".repeat(3000));
+        assert!(printable(&long).len() < 100 && printable("a/b c").len() == 5);
     }
 }
