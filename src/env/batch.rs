@@ -111,6 +111,14 @@ impl EnvBatch {
         Ok(Some(LiveView::Cpu(States(states))))
     }
 
+    /// Contacts that found no room, in all parts: see [`VecEnv::contact_overflow`].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn contact_overflow(&self) -> Result<u64> {
+        self.parts.iter().map(|part| part.contact_overflow()).sum()
+    }
+
     /// Saves every part into a section of its own, and the curriculum.
     ///
     /// # Errors

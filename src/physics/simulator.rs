@@ -25,7 +25,8 @@ pub struct SolverOptions {
     pub dt: f32,
     /// Iterations of projected Gauss-Seidel.
     pub iterations: u32,
-    /// Contacts that a world has room for.
+    /// Contacts that a world on a GPU has room for. On the CPU it takes what it needs, up to
+    /// [`MOST_CONTACTS`].
     pub max_contacts: usize,
 }
 
@@ -33,8 +34,11 @@ pub struct SolverOptions {
 pub const STEP_RATE: f32 = 120.0;
 /// Steps of one action.
 pub const SUBSTEPS: usize = 4;
-/// Contacts that there is room for, for each character and at least for a world.
+/// Contacts that there is room for on a GPU, for each character and at least for a world.
 pub const MAX_CONTACTS: usize = 16;
+/// Contacts that a world on the CPU may have: more are a heap of shapes inside each other, and would take
+/// all memory.
+pub const MOST_CONTACTS: usize = 4096;
 
 impl SolverOptions {
     /// Enough iterations for training.
@@ -231,12 +235,7 @@ impl Simulator {
     ) {
         self.inertia_and_bias(&state.q, &state.v);
         self.smooth_acceleration(state, targets, external_forces);
-        detect_contacts(
-            &self.model,
-            &self.poses,
-            self.options.max_contacts,
-            &mut self.contacts,
-        );
+        detect_contacts(&self.model, &self.poses, MOST_CONTACTS, &mut self.contacts);
         self.make_constraints(state);
         self.solve();
     }

@@ -52,6 +52,64 @@ fn a_model_of_ones_own_is_simulated() {
 }
 
 #[test]
+fn the_cpu_has_room_for_all_contacts() {
+    let place = Place::new();
+    for boxes in [1, 8, 9, 24] {
+        place.write("boxes.xml", boxes_on_the_ground(boxes));
+        let told = figures(
+            &place,
+            "--model boxes.xml --envs 2 --seconds 1 --device cpu",
+        );
+        assert_eq!(told["contacts_max"], 4 * boxes, "{told}");
+        assert_eq!(told["overflow"], 0, "{told}");
+    }
+}
+
+#[test]
+fn a_gpu_without_room_says_so() {
+    let place = Place::new();
+    place.write("boxes.xml", boxes_on_the_ground(9));
+    let run = |words: &str| {
+        let words =
+            format!("sim --json --model boxes.xml --envs 2 --seconds 1 --device lavapipe {words}");
+        let told = place.done(&words);
+        let figures: Value = serde_json::from_str(&told.out).unwrap();
+        (figures, told.err)
+    };
+    let (told, said) = run("");
+    assert_eq!(told["contacts_max"], 32, "{told}");
+    let lost = told["overflow"].as_u64().unwrap();
+    // At rest four of each step.
+    assert!(lost > 200, "{told}");
+    let warning = format!("warning: {lost} contacts found no room");
+    assert!(
+        said.contains(&warning) && said.contains("--contacts"),
+        "{said}"
+    );
+    let (few, _) = run("--contacts 8");
+    assert_eq!(few["contacts_max"], 8, "{few}");
+    place.write("boxes.xml", boxes_on_the_ground(8));
+    let (enough, said) = run("");
+    assert_eq!(enough["overflow"], 0, "{enough}");
+    assert!(!said.contains("warning"), "{said}");
+}
+
+/// Boxes side by side, a little above the ground.
+fn boxes_on_the_ground(count: usize) -> String {
+    let boxes = (0..count).map(|index| {
+        format!(
+            r#"<body pos="{} {} .11"><freejoint/><geom type="box" size=".1 .1 .1" mass="1"/></body>"#,
+            0.3 * (index % 6) as f32,
+            0.3 * (index / 6) as f32
+        )
+    });
+    format!(
+        r#"<mujoco><worldbody><geom type="plane" size="5 5 .1"/>{}</worldbody></mujoco>"#,
+        boxes.collect::<String>()
+    )
+}
+
+#[test]
 fn clips_become_film_strips() {
     let place = Place::new();
     place.done("data synth --minutes 0.1 --out small.footwork --bvh clips");
@@ -87,6 +145,8 @@ fn what_cannot_be_simulated_is_said() {
         ("--seconds 1e9", 2, "--seconds must be above zero"),
         ("--action-std -1", 2, "--action-std must lie between"),
         ("--action-std inf", 2, "--action-std must lie between"),
+        ("--contacts 0", 2, "--contacts must be from 1 to 32"),
+        ("--contacts 33", 2, "--contacts must be from 1 to 32"),
         (
             "--scene three",
             2,

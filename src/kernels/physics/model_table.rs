@@ -7,6 +7,9 @@ use crate::physics::factor::columns;
 use crate::physics::model::{Body, Dof, Joint, JointKind, Model, SolverParams};
 use crate::physics::simulator::SolverOptions;
 
+/// Contacts of a world that shaders have room for at most.
+pub const CONTACT_BOUND: u32 = crate::gpu::shader::solve_and_integrate::constants::CONTACT_BOUND;
+
 /// What does not fit a shader's fixed arrays.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
@@ -93,7 +96,7 @@ fn fits(model: &Model, options: &SolverOptions) -> Result<(), TooLarge> {
         ("degrees of freedom", model.dofs.len(), at::WORLD_DOF_BOUND),
         ("joints", model.joints.len(), solve::JOINT_BOUND),
         ("geoms", model.geoms.len(), contact::GEOM_BOUND),
-        ("contacts", options.max_contacts, solve::CONTACT_BOUND),
+        ("contacts", options.max_contacts, CONTACT_BOUND),
     ] {
         let most = most as usize;
         if found > most {

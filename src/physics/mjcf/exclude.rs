@@ -54,8 +54,7 @@ impl<'a> WorldBuilder<'a> {
     }
 }
 
-/// Pairs in the model's order: those with planes first, so that a full list of contacts loses them last,
-/// and each family together, so that shaders take one after another.
+/// Pairs in the model's order: each family together, so that shaders take one after another.
 pub fn ordered(geoms: &[Geom], pairs: Vec<[usize; 2]>) -> Vec<[usize; 2]> {
     let turned = |[a, b]: [usize; 2]| match rank(&geoms[a]) <= rank(&geoms[b]) {
         true => [a, b],
