@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use footwork::env::humanoid::batch::{self, SimulatorBatchConfig};
 use footwork::gpu::{Choice, Device};
 use footwork::kernels::physics::model_table::CONTACT_BOUND;
-use footwork::physics::mjcf;
+use footwork::physics::mjcf::{self, MjcfOptions};
 use footwork::physics::model::Model;
 use footwork::physics::scenes;
 use footwork::physics::simulator::{STEP_RATE, SUBSTEPS, SolverOptions};
@@ -58,7 +58,11 @@ pub struct Sim {
     /// A model of your own, MJCF, in place of the humanoid
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
-    /// Standard deviation of the drives' targets, rad
+    /// Read its motors as drives to a position, whose gains are the joints' stiffness and damping, as Isaac
+    /// Gym does; to MuJoCo they are torques
+    #[arg(long, requires = "model")]
+    pd_motors: bool,
+    /// Standard deviation of the drives' targets, rad; of motors' controls
     #[arg(
         long,
         value_name = "RAD",
@@ -190,7 +194,14 @@ impl Sim {
 
     fn load(&self) -> Result<Model> {
         Ok(match (&self.model, self.scene) {
-            (Some(file), _) => mjcf::read(file)?,
+            (Some(file), _) => {
+                let pd_motors = self.pd_motors;
+                let read = mjcf::read(file, MjcfOptions { pd_motors })?;
+                for note in &read.notes {
+                    tell!("note: {}: {note}", file.display());
+                }
+                read.model
+            }
             (None, Scene::Humanoid) => scenes::humanoid(),
             (None, Scene::Boxing) => scenes::boxing_match(),
             (None, Scene::PunchingBox) => scenes::humanoid_and_box(),

@@ -6,7 +6,7 @@ use super::constraints::{
     ConstraintRows, ContactConstraint, Lane, LimitConstraint, contact_constraints,
     limit_constraints,
 };
-use super::drive::{Effort, efforts, limit};
+use super::drive::{Effort, efforts, limit, spring_efforts};
 use super::dynamics::{bias, inertias, mass_matrix};
 use super::factor::{LANES, columns, factor, solve_l, solve_lt};
 use super::integrate::integrate;
@@ -122,6 +122,7 @@ pub struct Simulator {
     /// Its factor L, with what is implicit in the drives, `[nm]`.
     pub factors: Vec<f32>,
     efforts: Vec<Effort>,
+    springs: Vec<Effort>,
     /// Accelerations without constraints, `[nv]`.
     pub qacc_smooth: Vec<f32>,
     /// Unconstrained acceleration, whitened by the factor of the mass matrix: L qacc.
@@ -155,6 +156,7 @@ impl Simulator {
             mass_matrix: vec![0.0; model.nm()],
             factors: vec![0.0; model.nm()],
             efforts: vec![Effort::default(); dofs],
+            springs: vec![Effort::default(); dofs],
             qacc_smooth: vec![0.0; dofs],
             qacc_whitened: vec![0.0; dofs],
             contacts: DetectedContacts::default(),
@@ -283,7 +285,7 @@ impl Simulator {
         }
     }
 
-    /// Computes accelerations without constraints: by drives, their limits, external forces.
+    /// Computes accelerations without constraints: by springs, drives, their limits, external forces.
     pub fn smooth_acceleration(
         &mut self,
         state: &SimulatorState,
@@ -291,6 +293,7 @@ impl Simulator {
         external_forces: &[Spatial],
     ) {
         let (q, v, dt) = (&state.q, &state.v, self.options.dt);
+        spring_efforts(&self.model, q, v, dt, &mut self.springs);
         efforts(&self.model, q, v, targets, dt, &mut self.efforts);
         self.apply_external_forces(q, external_forces);
         self.solve_smooth();
@@ -319,9 +322,10 @@ impl Simulator {
 
     fn solve_smooth(&mut self) {
         self.factors.copy_from_slice(&self.mass_matrix);
-        for (index, (dof, effort)) in self.model.dofs.iter().zip(&self.efforts).enumerate() {
-            self.factors[dof.row] += effort.armature;
-            self.qacc_whitened[index] = effort.force - self.bias[index];
+        let efforts = self.efforts.iter().zip(&self.springs);
+        for (index, (dof, (drive, spring))) in self.model.dofs.iter().zip(efforts).enumerate() {
+            self.factors[dof.row] += drive.armature + spring.armature;
+            self.qacc_whitened[index] = drive.force + spring.force - self.bias[index];
         }
         let (model, columns) = (&self.model, &self.columns);
         factor(model, columns, &mut self.factors);

@@ -164,10 +164,22 @@ fn dof(dof: &Dof, last: usize) -> Vec<u32> {
     let mut words: Vec<u32> = row.map(|n| n as u32).to_vec();
     words.extend(reals(&[dof.armature]));
     words.push(at::NONE);
-    let drive = dof
-        .drive
-        .map(|drive| [drive.stiffness, drive.damping, drive.limit]);
+    let drive = dof.drive.map(|drive| {
+        let [least, most] = drive.control;
+        [
+            drive.stiffness,
+            drive.damping,
+            drive.limit,
+            drive.torque,
+            least,
+            most,
+        ]
+    });
     words.extend(reals(&drive.unwrap_or_default()));
+    let spring = dof
+        .spring
+        .map(|spring| [spring.stiffness, spring.damping, spring.rest]);
+    words.extend(reals(&spring.unwrap_or_default()));
     words.extend(reals(&[dof.invweight0]));
     words.push(dof.body as u32);
     words
