@@ -167,6 +167,12 @@ impl Section {
         serde_json::from_value(value).map_err(|error| SectionError(format!("`{name}`: {error}")))
     }
 
+    /// Number of four-byte values in the array of a name; 0 if there is none.
+    pub fn array_len(&self, name: &str) -> usize {
+        let array = self.arrays.0.iter().find(|(other, _)| other == name);
+        array.map_or(0, |(_, bytes)| bytes.len() / 4)
+    }
+
     /// Takes out the array of a name, which must have `len` elements.
     ///
     /// # Errors

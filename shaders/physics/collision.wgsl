@@ -5,7 +5,7 @@
 // poses        [bodies * 7][envs]: position, quaternion x y z w
 // contacts     [max_contacts * 10][envs]: position, normal, first tangent, distance
 // contact_ids  [max_contacts][envs]: pair * 8 + point, the same from step to step
-// counts       [2][envs]: contacts kept, contacts that found no slot
+// counts       [2][envs]: contacts kept, contacts that found no slot: the shallowest
 
 #import model_table
 #import spatial

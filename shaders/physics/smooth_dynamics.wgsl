@@ -4,7 +4,7 @@
 //
 // model_table    see `model_table`
 // state            [positions + dofs][envs], q then v
-// targets          [driven][envs], of the drives, rad
+// targets          [driven][envs], of the drives, rad or, of motors, controls
 // external_forces  [bodies * 6][envs], torque and force at the centres of mass
 // poses            [bodies * 7][envs], place and quaternion x y z w, in the world
 // dynamics         [..][envs]: axes [dofs * 6], factor of the mass matrix with armature and what is implicit in the
@@ -59,7 +59,7 @@ struct Pose {
     rotation: vec4f,
 }
 
-// Of a drive: force, and armature of its implicit part (src/physics/drive.rs).
+// Of a drive or spring: force, and armature of its implicit part (src/physics/drive.rs).
 struct Effort {
     force: f32,
     armature: f32,
@@ -132,6 +132,7 @@ fn forward_pass(tree: Tree, local: u32) {
             let motion = Spatial(vec3f(0.0), along);
             axes[dof + k - tree.dof] = motion;
             efforts[dof + k - tree.dof] = Effort(0.0, 0.0);
+            bias[dof + k - tree.dof] = -spring_effort(dof + k, 0.0, v(dof + k)).force;
             velocity = add(velocity, scaled(motion, v(dof + k)));
         }
         // Of a drive: the angle, or the parts of the rotation vector.
@@ -163,6 +164,7 @@ fn forward_pass(tree: Tree, local: u32) {
             let speed = v(turning);
             axes[turning - tree.dof] = motion;
             efforts[turning - tree.dof] = effort(turning, angles[k], speed);
+            bias[turning - tree.dof] = -spring_effort(turning, angles[k], speed).force;
             now = add(now, scaled(cross_motion(before, motion), speed));
             velocity = add(velocity, scaled(motion, speed));
         }
@@ -194,17 +196,27 @@ fn inertia_of(at: u32, pose: Pose, origin: vec3f) -> Inertia {
     return Inertia(mass, mass * c, diagonal, mixed);
 }
 
+// A pull towards a target, and against motion: gains are stiffness and damping.
+fn pull(gains: vec2f, wanted: f32, angle: f32, speed: f32) -> Effort {
+    return Effort(
+        gains.x * (wanted - angle - params.dt * speed) - gains.y * speed,
+        params.dt * gains.y + params.dt * params.dt * gains.x,
+    );
+}
+
 fn effort(dof: u32, angle: f32, speed: f32) -> Effort {
     let info = model_table[DOFS_AT] + dof * DOF;
     let target_at = model_table[info + DOF_TARGET];
     if (target_at == NONE) { return Effort(0.0, 0.0); }
-    let stiffness = real(info + DOF_STIFFNESS);
-    let damping = real(info + DOF_DAMPING);
-    let wanted = targets[target_at * params.envs + env];
-    return Effort(
-        stiffness * (wanted - angle - params.dt * speed) - damping * speed,
-        params.dt * damping + params.dt * params.dt * stiffness,
-    );
+    let control = clamp(targets[target_at * params.envs + env], real(info + DOF_CONTROL), real(info + DOF_CONTROL + 1u));
+    let own = pull(vec2f(real(info + DOF_STIFFNESS), real(info + DOF_DAMPING)), control, angle, speed);
+    return Effort(real(info + DOF_TORQUE) * control + own.force, own.armature);
+}
+
+// A joint's own spring and damper.
+fn spring_effort(dof: u32, angle: f32, speed: f32) -> Effort {
+    let info = model_table[DOFS_AT] + dof * DOF + DOF_SPRING;
+    return pull(vec2f(real(info), real(info + 1u)), real(info + 2u), angle, speed);
 }
 
 // The force that a body's motion and weight ask for, less what external_forces it.
@@ -228,12 +240,12 @@ fn external3(at: u32) -> vec3f {
     return vec3f(external_forces[index], external_forces[index + e], external_forces[index + 2u * e]);
 }
 
-// Bias forces, and what the parent carries.
+// Bias forces, besides those of springs, which are there; and what the parent carries.
 fn backward_pass(tree: Tree, local: u32) {
     let at = model_table[BODIES_AT] + (tree.body + local) * BODY;
     for (var k = 0u; k < model_table[at + BODY_DOFS]; k++) {
         let dof = model_table[at + BODY_DOF] + k - tree.dof;
-        bias[dof] = product(axes[dof], forces[local]);
+        bias[dof] += product(axes[dof], forces[local]);
     }
     let parent = model_table[at + BODY_PARENT];
     if (parent != NONE) {
@@ -264,7 +276,10 @@ fn factorize(tree: Tree) {
         var inverse = 1.0;
         for (var k = 0u; k < depth; k++) {
             var entry = product(moved, axes[model_table[model_table[COLUMNS_AT] + row + k] - tree.dof]);
-            if (k == 0u) { entry += real(info + DOF_ARMATURE) + efforts[own].armature; }
+            if (k == 0u) {
+                let spring = spring_effort(tree.dof + own, 0.0, 0.0).armature;
+                entry += real(info + DOF_ARMATURE) + efforts[own].armature + spring;
+            }
             for (var beyond = left; beyond < last; beyond++) {
                 let at = ancestor_entry(tree, beyond, depth);
                 entry -= factors[at] * factors[at + k];

@@ -73,9 +73,12 @@ const DOF_TARGET = 5u;      // place among the drives' targets, NONE without a d
 const DOF_STIFFNESS = 6u;
 const DOF_DAMPING = 7u;
 const DOF_LIMIT = 8u;
-const DOF_INVWEIGHT0 = 9u;
-const DOF_BODY = 10u;
-const DOF = 11u;
+const DOF_TORQUE = 9u;      // of a unit of the control
+const DOF_CONTROL = 10u;    // 2: least and largest
+const DOF_SPRING = 12u;     // 3: stiffness, damping, rest
+const DOF_INVWEIGHT0 = 15u;
+const DOF_BODY = 16u;
+const DOF = 17u;
 
 // A tree.
 const TREE_BODY = 0u;       // first

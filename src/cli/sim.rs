@@ -6,7 +6,8 @@ use anyhow::Result;
 use clap::{Args, ValueEnum};
 use footwork::env::humanoid::batch::{self, SimulatorBatchConfig};
 use footwork::gpu::{Choice, Device};
-use footwork::physics::mjcf;
+use footwork::kernels::physics::model_table::CONTACT_BOUND;
+use footwork::physics::mjcf::{self, MjcfOptions};
 use footwork::physics::model::Model;
 use footwork::physics::scenes;
 use footwork::physics::simulator::{STEP_RATE, SUBSTEPS, SolverOptions};
@@ -57,7 +58,11 @@ pub struct Sim {
     /// A model of your own, MJCF, in place of the humanoid
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
-    /// Standard deviation of the drives' targets, rad
+    /// Read its motors as drives to a position, whose gains are the joints' stiffness and damping, as Isaac
+    /// Gym does; to MuJoCo they are torques
+    #[arg(long, requires = "model")]
+    pd_motors: bool,
+    /// Standard deviation of the drives' targets, rad; of motors' controls
     #[arg(
         long,
         value_name = "RAD",
@@ -65,6 +70,10 @@ pub struct Sim {
         allow_negative_numbers = true
     )]
     action_std: f32,
+    /// Contacts that an environment on a GPU has room for [default: 16, of several bodies 32]; the CPU
+    /// solves all there are
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    contacts: Option<usize>,
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     seed: u32,
     /// Print the figures as JSON
@@ -101,12 +110,13 @@ const MAX_ENVS: usize = 1 << 20;
 
 /// What only random actions know.
 #[cfg(feature = "viewer")]
-const RANDOM: [&str; 7] = [
+const RANDOM: [&str; 8] = [
     "envs",
     "device",
     "seconds",
     "scene",
     "action_std",
+    "contacts",
     "seed",
     "json",
 ];
@@ -148,6 +158,16 @@ impl Sim {
         if !(0.0..=10.0).contains(&self.action_std) {
             return Err(Usage("--action-std must lie between 0 and 10 rad".into()).into());
         }
+        let room = 1..=CONTACT_BOUND as usize;
+        if self
+            .contacts
+            .is_some_and(|contacts| !room.contains(&contacts))
+        {
+            let why = format!(
+                "--contacts must be from 1 to {CONTACT_BOUND}, which is all that shaders hold; `--device cpu` has room for all"
+            );
+            return Err(Usage(why).into());
+        }
         let bytes = self.envs as u64 * memory::ENVIRONMENT;
         memory::check(bytes, "use a smaller --envs")?;
         let model = Arc::new(self.load()?);
@@ -159,6 +179,9 @@ impl Sim {
         }
         let device = Device::open(self.device)?;
         let figures = self.measure(model, &device)?;
+        if let Some(warning) = batch::overflow_warning(figures.overflow) {
+            tell!("{warning}, and --contacts gives up to {CONTACT_BOUND}");
+        }
         match self.json {
             true => say!("{}", serde_json::to_string_pretty(&figures)?),
             false => show!("{}", shown(&figures)),
@@ -199,7 +222,14 @@ impl Sim {
 
     fn load(&self) -> Result<Model> {
         Ok(match (&self.model, self.scene) {
-            (Some(file), _) => mjcf::read(file)?,
+            (Some(file), _) => {
+                let pd_motors = self.pd_motors;
+                let read = mjcf::read(file, MjcfOptions { pd_motors })?;
+                for note in &read.notes {
+                    tell!("note: {}: {note}", file.display());
+                }
+                read.model
+            }
             (None, Scene::Humanoid) => scenes::humanoid(),
             (None, Scene::Boxing) => scenes::boxing_match(),
             (None, Scene::PunchingBox) => scenes::humanoid_and_box(),
@@ -207,9 +237,13 @@ impl Sim {
     }
 
     fn measure(&self, model: Arc<Model>, device: &Device) -> Result<Figures> {
+        let usual = SolverOptions::fast(&model);
         let config = SimulatorBatchConfig {
             envs: self.envs,
-            options: SolverOptions::fast(&model),
+            options: SolverOptions {
+                max_contacts: self.contacts.unwrap_or(usual.max_contacts),
+                ..usual
+            },
             seed: self.seed,
             force_pairs: Vec::new(),
             model,

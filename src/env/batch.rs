@@ -110,6 +110,14 @@ impl EnvBatch {
         Ok(all)
     }
 
+    /// Contacts that found no room, in all parts: see [`VecEnv::contact_overflow`].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn contact_overflow(&self) -> Result<u64> {
+        self.parts.iter().map(|part| part.contact_overflow()).sum()
+    }
+
     /// Saves every part into a section of its own, and the curriculum.
     ///
     /// # Errors

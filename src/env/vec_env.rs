@@ -62,6 +62,14 @@ pub trait VecEnv: Send {
         Ok(None)
     }
 
+    /// Contacts that found no room on their device since the environments were opened.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn contact_overflow(&self) -> Result<u64> {
+        Ok(0)
+    }
+
     /// Writes everything that the environments need to go on as if they had never stopped. Only
     /// between rollouts.
     ///

@@ -61,14 +61,36 @@ pub fn collide(first: &WorldGeom, second: &WorldGeom, out: &mut ContactManifold)
 /// The contacts of a world.
 #[derive(Clone, Debug, Default)]
 pub struct DetectedContacts {
-    /// Contact points in the order of the model's pairs, at most `max_contacts` of them.
+    /// Contact points in the order of the model's pairs, but that deeper ones have taken the places of
+    /// shallow ones where there was no room.
     pub points: Vec<ContactPoint>,
     /// Ids of the points: the pair times [`MAX_POINTS`] plus the number in the pair, the same from step
     /// to step.
     pub ids: Vec<u32>,
-    /// Points that found no room.
+    /// Points that found no room: the shallowest.
     pub overflow: u32,
     geoms: Vec<(WorldGeom, f32)>,
+}
+
+impl DetectedContacts {
+    /// Adds a point; without room, in the place of the shallowest, if that is shallower than it.
+    fn add(&mut self, point: ContactPoint, id: u32, max_contacts: usize) {
+        if self.points.len() < max_contacts {
+            self.points.push(point);
+            self.ids.push(id);
+            return;
+        }
+        self.overflow += 1;
+        let (mut shallowest, mut distance) = (None, point.distance);
+        for (slot, kept) in self.points.iter().enumerate() {
+            if kept.distance > distance {
+                (shallowest, distance) = (Some(slot), kept.distance);
+            }
+        }
+        if let Some(slot) = shallowest {
+            (self.points[slot], self.ids[slot]) = (point, id);
+        }
+    }
 }
 
 /// Radius of a sphere that holds a shape; zero of a plane.
@@ -81,8 +103,8 @@ pub fn bounding_radius(shape: GeomShape) -> f32 {
     }
 }
 
-/// Detects the contacts of a world whose bodies have these poses, the first `max_contacts` of them in the
-/// order of the model's pairs.
+/// Detects the contacts of a world whose bodies have these poses: all, or the deepest if there are more than
+/// `max_contacts`.
 pub fn detect_contacts(
     model: &Model,
     poses: &[Pose],
@@ -104,15 +126,8 @@ pub fn detect_contacts(
         }
         manifold.clear();
         collide(first, second, &mut manifold);
-        let free = max_contacts - out.points.len();
-        let kept = manifold.as_slice().len().min(free);
-        out.points.extend_from_slice(&manifold.as_slice()[..kept]);
-        let numbers = &manifold.numbers()[..kept];
-        out.ids.extend(
-            numbers
-                .iter()
-                .map(|number| (pair * MAX_POINTS) as u32 + number),
-        );
-        out.overflow += (manifold.as_slice().len() - kept) as u32;
+        for (point, number) in manifold.as_slice().iter().zip(manifold.numbers()) {
+            out.add(*point, (pair * MAX_POINTS) as u32 + number, max_contacts);
+        }
     }
 }

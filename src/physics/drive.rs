@@ -1,17 +1,18 @@
-//! Proportional-derivative control, implicit in the joint's own motion: the torque at the end of a
-//! step, kp (target - q - dt v') - kd v' with v' = v + dt a, is a force that is known now and one
-//! that resists acceleration like an armature of dt kd + dt^2 kp.
+//! Drives, and the springs and dampers of joints, implicit in the joint's own motion: the torque at the
+//! end of a step, kp (target - q - dt v') - kd v' with v' = v + dt a, is a force that is known now and
+//! one that resists acceleration like an armature of dt kd + dt^2 kp.
 
 use super::kinematics::quaternion;
-use super::model::{Drive, Joint, JointKind, Model};
+use super::model::{Drive, Joint, JointKind, Model, Spring};
 use glam::{Quat, Vec3};
 
-/// A drive's force, Nm, and its armature, kg m^2.
+/// The force of a drive or spring, Nm, and its armature, kg m^2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effort {
-    /// Torque at zero acceleration, Nm: kp (target - q - dt v) - kd v, or the limit once that is passed.
+    /// Torque at zero acceleration, Nm: kp (target - q - dt v) - kd v and what the control of a motor adds,
+    /// or a drive's limit once that is passed.
     pub force: f32,
-    /// Inertia that makes the drive implicit, kg m^2: dt kd + dt^2 kp; zero at the limit.
+    /// Inertia that makes it implicit, kg m^2: dt kd + dt^2 kp; zero of a drive at its limit.
     pub armature: f32,
 }
 
@@ -43,16 +44,43 @@ fn angle(joint: &Joint, axis: usize, q: &[f32]) -> f32 {
     }
 }
 
+/// A pull towards a target, and against motion.
 #[inline]
-fn effort(drive: &Drive, target: f32, q: f32, v: f32, dt: f32) -> Effort {
+fn pull([stiffness, damping]: [f32; 2], target: f32, q: f32, v: f32, dt: f32) -> Effort {
     Effort {
-        force: drive.stiffness * (target - q - dt * v) - drive.damping * v,
-        armature: dt * drive.damping + dt * dt * drive.stiffness,
+        force: stiffness * (target - q - dt * v) - damping * v,
+        armature: dt * damping + dt * dt * stiffness,
     }
 }
 
-/// What the drives do, `[dofs]`. `targets` holds, one for each driven degree of freedom in order, an
-/// angle or a part of a rotation vector, rad.
+#[inline]
+fn effort(drive: &Drive, control: f32, q: f32, v: f32, dt: f32) -> Effort {
+    let control = control.clamp(drive.control[0], drive.control[1]);
+    let pull = pull([drive.stiffness, drive.damping], control, q, v, dt);
+    Effort {
+        force: drive.torque * control + pull.force,
+        ..pull
+    }
+}
+
+/// What the joints' own springs and dampers do, `[dofs]`.
+#[inline]
+pub fn spring_efforts(model: &Model, q: &[f32], v: &[f32], dt: f32, efforts: &mut [Effort]) {
+    for (index, dof) in model.dofs.iter().enumerate() {
+        let Some(spring) = dof.spring else { continue };
+        let Spring {
+            stiffness,
+            damping,
+            rest,
+        } = spring;
+        let joint = &model.joints[dof.joint];
+        let angle = angle(joint, index - joint.v, q);
+        efforts[index] = pull([stiffness, damping], rest, angle, v[index], dt);
+    }
+}
+
+/// What the drives do, `[dofs]`. `targets` holds their controls, one for each driven degree of freedom in
+/// order: an angle or a part of a rotation vector, rad, or a motor's part of its torque.
 #[inline]
 pub fn efforts(
     model: &Model,

@@ -1,9 +1,11 @@
 //! Reads models from MJCF, MuJoCo's file format.
 //!
-//! Bodies with free, ball and hinge joints; planes, spheres, capsules and boxes; default classes;
-//! drives to a position; excluded contacts. All this means what it means to MuJoCo, but for `motor`
-//! (see [`drive`]). The simulator has its own time step and solver, so that those of the file do not
-//! count. What cannot change the dynamics is skipped, and everything else refused.
+//! Bodies with free, ball and hinge joints, their springs and dampers; planes, spheres, capsules and boxes,
+//! and shapes that only weigh or are only seen; frames, included files, default classes; motors, drives to a
+//! position and general actuators that are one of these; excluded contacts. All this means what it means to
+//! MuJoCo, unless [`MjcfOptions`] say otherwise. The simulator has its own time step and solver, so that
+//! those of the file do not count. What cannot change the dynamics is skipped, and everything else refused,
+//! all of it at once.
 
 mod class;
 mod drive;
@@ -15,63 +17,46 @@ mod geom;
 mod grammar;
 mod joint;
 mod mass;
+mod member;
+mod options;
 mod settings;
 mod shape;
+mod source;
 mod worldbody;
 
 use super::model::Model;
 use class::Classes;
 use element::Element;
-pub use error::{MjcfError, Result};
+pub use error::{MjcfError, MjcfProblem, Result};
 pub use exclude::ordered;
-use grammar::MUJOCO;
-use roxmltree::Document;
+use grammar::{MUJOCO, TENDON, TENDONS};
+pub use options::MjcfOptions;
 use settings::MjcfSettings;
-use std::io::Read;
+pub use source::MAX_BYTES;
+use source::{Source, read_text, refuse_large, xml};
 use std::path::Path;
 use worldbody::WorldBuilder;
 
-/// Size of the largest file that is read, bytes: 1 MiB.
-pub const MAX_BYTES: u64 = 1 << 20;
+/// A model, and what the user should know of how it was read.
+#[derive(Clone, Debug)]
+pub struct MjcfModel {
+    /// The model.
+    pub model: Model,
+    /// What to tell the user.
+    pub notes: Vec<String>,
+}
 
 /// Reads a model from an MJCF file.
 ///
 /// # Errors
-/// A file that cannot be read, is larger than [`MAX_BYTES`] or is not UTF-8; text that is no valid XML;
-/// elements, attributes and values that are wrong or not supported, with the line they are on.
-pub fn read(path: &Path) -> Result<Model> {
-    let failed = |error| MjcfError::Read {
-        path: path.to_path_buf(),
-        error,
-    };
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(failed)?;
-    // One more than allowed: enough to be refused.
-    let mut file = file.take(MAX_BYTES + 1);
-    file.read_to_end(&mut bytes).map_err(failed)?;
-    refuse_large(bytes.len(), path)?;
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        MjcfError::Mjcf {
-            path: path.to_path_buf(),
-            line: 1 + good.iter().filter(|byte| **byte == b'\n').count() as u32,
-            problem: "bytes that are not UTF-8; save the file as UTF-8".to_string(),
-        }
-    })?;
-    parse(&text, path)
+/// A file, or one that it includes, that cannot be read, is larger than [`MAX_BYTES`] or is not UTF-8; text
+/// that is no valid XML; elements, attributes and values that are wrong or not supported, all of them, with
+/// the lines they are on.
+pub fn read(path: &Path, options: MjcfOptions) -> Result<MjcfModel> {
+    compile(&read_text(path)?, path, options)
 }
 
-fn refuse_large(bytes: usize, path: &Path) -> Result<()> {
-    match bytes as u64 <= MAX_BYTES {
-        true => Ok(()),
-        false => Err(MjcfError::TooLarge {
-            path: path.to_path_buf(),
-            limit: MAX_BYTES,
-        }),
-    }
-}
-
-/// Reads a model from MJCF text. `file` is what errors call it.
+/// Reads a model from MJCF text. `file` is what errors call it, and its folder is where included files are.
 ///
 /// # Errors
 /// Text that is wrong in one of the ways that [`read`] names.
@@ -91,24 +76,47 @@ fn refuse_large(bytes: usize, path: &Path) -> Result<()> {
 /// # Ok::<(), footwork::physics::mjcf::MjcfError>(())
 /// ```
 pub fn parse(text: &str, file: &Path) -> Result<Model> {
+    compile(text, file, MjcfOptions::default()).map(|read| read.model)
+}
+
+fn compile(text: &str, file: &Path, options: MjcfOptions) -> Result<MjcfModel> {
     refuse_large(text.len(), file)?;
-    let document = Document::parse(text).map_err(|error| MjcfError::Mjcf {
-        path: file.to_path_buf(),
-        line: error.pos().row,
-        problem: format!("this is no valid XML: {error}"),
-    })?;
-    let root = Element::new(file, document.root_element());
+    let source = Source::new(text, file)?;
+    let document = xml(&source.text, file)?;
+    let root = Element::new(&source, document.root_element());
     if root.tag() != "mujoco" {
-        return Err(root.error("is not what MJCF begins with: <mujoco>"));
+        root.report(root.error("is not what MJCF begins with: <mujoco>"));
+        source.check()?;
     }
-    root.check(&MUJOCO)?;
-    let settings = MjcfSettings::read(&root)?;
-    let classes = Classes::read(&root)?;
-    let mut world = WorldBuilder::read(&root, &settings, &classes)?;
-    world.drives(&root)?;
-    world.pairs(&root)?;
+    root.check(&MUJOCO);
+    let settings = MjcfSettings::read(&root, options);
+    let classes = Classes::read(&root);
+    let mut world = WorldBuilder::read(&root, &settings, &classes);
+    let notes = world.drives(&root);
+    world.pairs(&root);
+    ties(&root, &classes, &settings);
+    source.check()?;
     let mut model = world.model;
     model.name = root.word("model").unwrap_or_default().to_string();
     model.set_invweight0();
-    Ok(model)
+    Ok(MjcfModel { model, notes })
+}
+
+/// Refuses what ties bodies and joints together, unless it is switched off or does nothing.
+fn ties<'a>(root: &Element<'a>, classes: &Classes<'a>, settings: &MjcfSettings) {
+    for tie in root.sections("equality").flat_map(|top| top.children()) {
+        let tie = classes.apply(tie, None);
+        if tie.word("active") != Some("false") {
+            let problem = r#"is not supported; remove it, or switch it off with active="false""#;
+            tie.report(tie.error(problem));
+        }
+    }
+    for tendon in root.within("tendon", &TENDONS) {
+        let tendon = classes.apply(tendon, None);
+        tendon.check(&TENDON);
+        if let Some(Some(_)) = tendon.keep(settings.limits(&tendon, "range", "limited")) {
+            let problem = r#"limited tendons are not supported; remove it, or set limited="false""#;
+            tendon.report(tendon.wrong("range", problem));
+        }
+    }
 }

@@ -130,21 +130,52 @@ pub struct Dof {
     pub row: usize,
     /// Inertia added to its own, kg m^2 (kg for translations).
     pub armature: f32,
+    /// Its own spring and damper, if it has any.
+    pub spring: Option<Spring>,
     /// Its actuator, none if it is passive.
     pub drive: Option<Drive>,
     /// Inverse inertia that a force at it meets at the start (MuJoCo's `dof_invweight0`).
     pub invweight0: f32,
 }
 
-/// Proportional-derivative control of one degree of freedom.
+/// A passive spring and damper of one degree of freedom (MuJoCo's `jnt_stiffness` and `dof_damping`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// Nm/rad
+    pub stiffness: f32,
+    /// Nm s/rad
+    pub damping: f32,
+    /// Where it rests, rad.
+    pub rest: f32,
+}
+
+/// The actuator of one degree of freedom: proportional-derivative control to a target, or a motor, whose
+/// control is a torque, or both (MuJoCo's fixed gain and affine bias).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
-    /// Nm/rad
+    /// Torque that a unit of the control adds, Nm; 0 if the control is the target alone.
+    pub torque: f32,
+    /// Of the pull towards the control as a target, Nm/rad; 0 of a motor.
     pub stiffness: f32,
     /// Nm s/rad
     pub damping: f32,
     /// Largest torque, Nm.
     pub limit: f32,
+    /// Least and largest control: what is beyond counts as these.
+    pub control: [f32; 2],
+}
+
+impl Drive {
+    /// Control to a target, without a range of targets.
+    pub fn to_target(stiffness: f32, damping: f32, limit: f32) -> Drive {
+        Drive {
+            torque: 0.0,
+            stiffness,
+            damping,
+            limit,
+            control: [f32::MIN, f32::MAX],
+        }
+    }
 }
 
 /// How a constraint gives way, as in MuJoCo.

@@ -6,7 +6,7 @@ use super::constraints::{
     ConstraintRows, ContactConstraint, Lane, LimitConstraint, contact_constraints,
     limit_constraints,
 };
-use super::drive::{Effort, efforts, limit};
+use super::drive::{Effort, efforts, limit, spring_efforts};
 use super::dynamics::{bias, inertias, mass_matrix};
 use super::factor::{LANES, columns, factor, solve_l, solve_lt};
 use super::integrate::integrate;
@@ -25,7 +25,8 @@ pub struct SolverOptions {
     pub dt: f32,
     /// Iterations of projected Gauss-Seidel.
     pub iterations: u32,
-    /// Contacts that a world has room for.
+    /// Contacts that a world on a GPU has room for. On the CPU it takes what it needs, up to
+    /// [`MOST_CONTACTS`].
     pub max_contacts: usize,
 }
 
@@ -33,8 +34,11 @@ pub struct SolverOptions {
 pub const STEP_RATE: f32 = 120.0;
 /// Steps of one action.
 pub const SUBSTEPS: usize = 4;
-/// Contacts that there is room for, for each character and at least for a world.
+/// Contacts that there is room for on a GPU, for each character and at least for a world.
 pub const MAX_CONTACTS: usize = 16;
+/// Contacts that a world on the CPU may have: more are a heap of shapes inside each other, and would take
+/// all memory.
+pub const MOST_CONTACTS: usize = 4096;
 
 impl SolverOptions {
     /// Enough iterations for training.
@@ -118,6 +122,7 @@ pub struct Simulator {
     /// Its factor L, with what is implicit in the drives, `[nm]`.
     pub factors: Vec<f32>,
     efforts: Vec<Effort>,
+    springs: Vec<Effort>,
     /// Accelerations without constraints, `[nv]`.
     pub qacc_smooth: Vec<f32>,
     /// Unconstrained acceleration, whitened by the factor of the mass matrix: L qacc.
@@ -151,6 +156,7 @@ impl Simulator {
             mass_matrix: vec![0.0; model.nm()],
             factors: vec![0.0; model.nm()],
             efforts: vec![Effort::default(); dofs],
+            springs: vec![Effort::default(); dofs],
             qacc_smooth: vec![0.0; dofs],
             qacc_whitened: vec![0.0; dofs],
             contacts: DetectedContacts::default(),
@@ -231,12 +237,7 @@ impl Simulator {
     ) {
         self.inertia_and_bias(&state.q, &state.v);
         self.smooth_acceleration(state, targets, external_forces);
-        detect_contacts(
-            &self.model,
-            &self.poses,
-            self.options.max_contacts,
-            &mut self.contacts,
-        );
+        detect_contacts(&self.model, &self.poses, MOST_CONTACTS, &mut self.contacts);
         self.make_constraints(state);
         self.solve();
     }
@@ -284,7 +285,7 @@ impl Simulator {
         }
     }
 
-    /// Computes accelerations without constraints: by drives, their limits, external forces.
+    /// Computes accelerations without constraints: by springs, drives, their limits, external forces.
     pub fn smooth_acceleration(
         &mut self,
         state: &SimulatorState,
@@ -292,6 +293,7 @@ impl Simulator {
         external_forces: &[Spatial],
     ) {
         let (q, v, dt) = (&state.q, &state.v, self.options.dt);
+        spring_efforts(&self.model, q, v, dt, &mut self.springs);
         efforts(&self.model, q, v, targets, dt, &mut self.efforts);
         self.apply_external_forces(q, external_forces);
         self.solve_smooth();
@@ -320,9 +322,10 @@ impl Simulator {
 
     fn solve_smooth(&mut self) {
         self.factors.copy_from_slice(&self.mass_matrix);
-        for (index, (dof, effort)) in self.model.dofs.iter().zip(&self.efforts).enumerate() {
-            self.factors[dof.row] += effort.armature;
-            self.qacc_whitened[index] = effort.force - self.bias[index];
+        let efforts = self.efforts.iter().zip(&self.springs);
+        for (index, (dof, (drive, spring))) in self.model.dofs.iter().zip(efforts).enumerate() {
+            self.factors[dof.row] += drive.armature + spring.armature;
+            self.qacc_whitened[index] = drive.force + spring.force - self.bias[index];
         }
         let (model, columns) = (&self.model, &self.columns);
         factor(model, columns, &mut self.factors);

@@ -58,14 +58,16 @@ const GAP: f64 = 34.0;
 const BOTTOM: f64 = 168.0;
 const LABEL_ROW: f64 = 30.0;
 const LABEL_ROWS: usize = 5;
+/// From a line of small text to the next.
+const LINE: f64 = 28.0;
 
 const CURVE: RGBColor = RGBColor(0x1e, 0x3a, 0x5f);
 
-/// One quantity over the steps, and another of the same axis beside it.
+/// One quantity over the steps, or two of one axis.
 pub(super) struct Panel {
     pub label: &'static str,
     pub value: fn(&Point) -> Option<f64>,
-    beside: Option<fn(&Point) -> Option<f64>>,
+    beside: Option<Beside>,
     /// The axis, where the quantity itself sets its limits.
     pub limits: Option<(f64, f64)>,
     /// How the last value is written beside the curve.
@@ -77,6 +79,13 @@ impl Panel {
     pub fn values(&self, points: &[Point]) -> Vec<(f64, f64)> {
         values(self.value, points)
     }
+}
+
+/// A second quantity of a panel.
+pub(super) struct Beside {
+    value: fn(&Point) -> Option<f64>,
+    /// Names of both, the panel's own first.
+    names: [&'static str; 2],
 }
 
 fn values(value: fn(&Point) -> Option<f64>, points: &[Point]) -> Vec<(f64, f64)> {
@@ -121,9 +130,12 @@ const STYLE_PANELS: [Panel; 3] = [
         format: brief,
     },
     Panel {
-        label: "recognised: agents, recordings (%)",
+        label: "recognised (%)",
         value: |point| point.agent_accuracy.map(|share| 100.0 * share),
-        beside: Some(|point| point.recorded_accuracy.map(|share| 100.0 * share)),
+        beside: Some(Beside {
+            value: |point| point.recorded_accuracy.map(|share| 100.0 * share),
+            names: ["agents", "recordings"],
+        }),
         limits: Some((0.0, 104.0)),
         format: percent,
     },
@@ -241,18 +253,27 @@ fn draw_panel(
     points: &[Point],
     marks: &[Mark],
 ) -> Result<(), ReportError> {
-    if let Some(beside) = panel.beside {
-        let raw = values(beside, points);
-        draw_line(canvas, panel, plot, &raw, &[], chart::colour(1))?;
+    if let Some(beside) = &panel.beside {
+        let raw = values(beside.value, points);
+        draw_line(canvas, panel, plot, &raw, &[], chart::colour(1), LINE)?;
+        let colours = [CURVE, chart::colour(1)];
+        for (row, (name, colour)) in beside.names.iter().zip(colours).enumerate() {
+            let at = (
+                plot.frame.left + 14.0,
+                plot.frame.bottom - 24.0 - LINE * row as f64,
+            );
+            canvas.text(name, at, Anchor::Left, chart::SMALL, colour)?;
+        }
     }
     let raw = panel.values(points);
     if raw.is_empty() {
         draw_marks(canvas, plot, marks)?;
         return plot.remark(canvas, "no finished episodes yet");
     }
-    draw_line(canvas, panel, plot, &raw, marks, CURVE)
+    draw_line(canvas, panel, plot, &raw, marks, CURVE, 0.0)
 }
 
+/// Draws a line whose last value is written so many pixels below its end.
 fn draw_line(
     canvas: &mut Canvas<'_>,
     panel: &Panel,
@@ -260,6 +281,7 @@ fn draw_line(
     raw: &[(f64, f64)],
     marks: &[Mark],
     colour: RGBColor,
+    below: f64,
 ) -> Result<(), ReportError> {
     let smooth = smoothed(raw, plot.x.max);
     let place = |&(x, y): &(f64, f64)| plot.at(x, y.clamp(plot.y.min, plot.y.max));
@@ -274,7 +296,8 @@ fn draw_line(
     let (x, y) = place(last);
     canvas.disc((x, y), 5.0, colour, 1.0)?;
     let text = (panel.format)(last.1);
-    canvas.text(&text, (x + 14.0, y), Anchor::Left, chart::SMALL, colour)
+    let at = (x + 14.0, y + below);
+    canvas.text(&text, at, Anchor::Left, chart::SMALL, colour)
 }
 
 /// Averages weighted by a bell curve, whose standard deviation is a small part of the

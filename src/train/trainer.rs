@@ -10,6 +10,7 @@ use super::run_dir::{RunDir, Summary};
 use super::state::TrainerState;
 use super::task::Task;
 use crate::env::EnvBatch;
+use crate::env::humanoid::batch::overflow_warning;
 use crate::gpu::Device;
 use crate::rl::Algorithm;
 use anyhow::{Context, Result};
@@ -64,6 +65,9 @@ pub fn train(
         let stopped_by = state.advance(interrupted, observer);
         let outcome = stopped_by.and_then(|by| {
             state.save_last()?;
+            if let Some(warning) = overflow_warning(state.envs.contact_overflow()?) {
+                observer.noted(&warning);
+            }
             Ok(by)
         });
         state.conclude(outcome)

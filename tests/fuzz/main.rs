@@ -82,7 +82,7 @@ fn bvh() {
 #[test]
 fn mjcf() {
     fuzz("mjcf", "xml", seeds::mjcf(), |path| {
-        let _ = footwork::physics::mjcf::read(path);
+        let _ = footwork::physics::mjcf::read(path, Default::default());
     });
 }
 

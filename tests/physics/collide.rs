@@ -241,13 +241,24 @@ fn position(geom: &Geom, poses: &[Pose]) -> WorldGeom {
 }
 
 #[test]
-fn counts_what_finds_no_slot() {
+fn keeps_the_deepest_and_counts_what_finds_no_slot() {
     let (model, poses) = (crowd(32), poses(15));
     let all = contacts(&model, &poses, usize::MAX);
     for max_contacts in [0, 1, 7, all.points.len() - 1, all.points.len()] {
         let some = contacts(&model, &poses, max_contacts);
-        assert_eq!(some.points, all.points[..max_contacts]);
-        assert_eq!(some.ids, all.ids[..max_contacts]);
+        let mut deepest: Vec<usize> = (0..all.points.len()).collect();
+        deepest.sort_by(|&a, &b| all.points[a].distance.total_cmp(&all.points[b].distance));
+        let mut wanted: Vec<u32> = (deepest[..max_contacts].iter())
+            .map(|&index| all.ids[index])
+            .collect();
+        wanted.sort_unstable();
+        let mut found = some.ids.clone();
+        found.sort_unstable();
+        assert_eq!(found, wanted);
+        for (point, id) in some.points.iter().zip(&some.ids) {
+            let index = all.ids.iter().position(|other| other == id).unwrap();
+            assert_eq!(*point, all.points[index]);
+        }
         assert_eq!(some.overflow as usize, all.points.len() - max_contacts);
     }
 }

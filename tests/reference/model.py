@@ -1,4 +1,5 @@
-"""What MuJoCo compiles models into: our humanoid, random ones, and the reference's. Writes model.json."""
+"""What MuJoCo makes of models: our humanoid, those in `models/`, random ones, and the reference's. Writes
+model.json: what they are compiled into and, of `models/`, where they have moved after a fifth of a second."""
 
 import json
 import os
@@ -32,8 +33,8 @@ def matrix(quat):
 class Facts:
     """A compiled model in our terms: what cannot move is the world, and no body."""
 
-    def __init__(self, xml):
-        self.m = mujoco.MjModel.from_xml_string(xml)
+    def __init__(self, model):
+        self.m = model
         self.d = mujoco.MjData(self.m)
         mujoco.mj_kinematics(self.m, self.d)
         moving = [b for b in range(self.m.nbody) if self.m.body_weldid[b] != 0]
@@ -82,11 +83,16 @@ class Facts:
             "body": self.index[m.jnt_bodyid[j]],
             "position": numbers(m.jnt_pos[j]),
             "axis": numbers(m.jnt_axis[j]),
-            "range": numbers(m.jnt_range[j]) if m.jnt_limited[j] else None,
+            "range": self.range(j) if m.jnt_limited[j] else None,
             "solver_params": numbers([*m.jnt_solref[j], *m.jnt_solimp[j]]),
             "q": int(m.jnt_qposadr[j]),
             "v": int(m.jnt_dofadr[j]),
         }
+
+    def range(self, j):
+        """What the margin leaves of it: before its end a limit acts as one that ends there."""
+        low = 0 if self.m.jnt_type[j] == mujoco.mjtJoint.mjJNT_BALL else 1
+        return numbers(self.m.jnt_range[j] + self.m.jnt_margin[j] * np.array([low, -1]))
 
     def dof(self, v):
         m = self.m
@@ -96,18 +102,40 @@ class Facts:
             "parent": None if parent < 0 else parent,
             "armature": numbers(m.dof_armature[v])[0],
             "invweight0": numbers(m.dof_invweight0[v])[0],
+            "spring": self.spring(v),
             "drive": self.drive(v),
         }
 
+    def spring(self, v):
+        """Stiffness, damping and rest, if there are any."""
+        m, joint = self.m, self.m.dof_jntid[v]
+        hinge = m.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE
+        rest = m.qpos_spring[m.jnt_qposadr[joint]] if hinge else 0
+        spring = [m.jnt_stiffness[joint], m.dof_damping[v]]
+        return numbers([*spring, rest]) if any(spring) else None
+
     def drive(self, v):
-        """Stiffness, damping and limit, if an actuator to a position has this degree of freedom."""
+        """Stiffness, damping, torque of a unit of the control, limit and range of the control, if there is an
+        actuator."""
         m = self.m
         for i in range(m.nu):
+            joint = m.actuator_trnid[i, 0]
             axis = int(np.argmax(np.abs(m.actuator_gear[i, :3])))
-            if m.actuator_biastype[i] == mujoco.mjtBias.mjBIAS_AFFINE and m.jnt_dofadr[m.actuator_trnid[i, 0]] + axis == v:
-                limit = m.actuator_forcerange[i, 1] if m.actuator_forcelimited[i] else None
-                gains = numbers([m.actuator_gainprm[i, 0], -m.actuator_biasprm[i, 2]])
-                return [*gains, limit and float(limit)]
+            if m.jnt_dofadr[joint] + axis != v:
+                continue
+            affine = m.actuator_biastype[i] == mujoco.mjtBias.mjBIAS_AFFINE
+            gear = m.actuator_gear[i, axis]
+            bias = m.actuator_biasprm[i, :3] if affine else np.zeros(3)
+            assert bias[0] == 0
+            limits = [abs(gear) * m.actuator_forcerange[i, 1]] if m.actuator_forcelimited[i] else []
+            limits += [m.jnt_actfrcrange[joint, 1]] if m.jnt_actfrclimited[joint] else []
+            stiffness = -gear * gear * bias[1]
+            return {
+                "gains": numbers([stiffness, -gear * gear * bias[2]]),
+                "torque": numbers(gear * m.actuator_gainprm[i, 0] - stiffness)[0],
+                "limit": float(min(limits)) if limits else None,
+                "control": numbers(m.actuator_ctrlrange[i]) if m.actuator_ctrllimited[i] else None,
+            }
         return None
 
     def geom(self, g):
@@ -269,16 +297,36 @@ class Random:
 </mujoco>"""
 
 
+def moved(model):
+    """Where a model is after a fifth of a second of steady controls, some of them beyond their ranges, without
+    contacts."""
+    model.opt.timestep = 1e-4
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
+    data = mujoco.MjData(model)
+    data.ctrl[:] = [0.7 * (-1) ** i for i in range(model.nu)]
+    for _ in range(2000):
+        mujoco.mj_step(model, data)
+    return {"controls": numbers(data.ctrl), "q": numbers(data.qpos), "v": numbers(data.qvel)}
+
+
 def main():
-    ours = OURS.read_text()
-    models = {"humanoid": {"facts": Facts(ours).all()}}
+    compiled = mujoco.MjModel.from_xml_string
+    models = {"humanoid": {"facts": Facts(compiled(OURS.read_text())).all()}}
+    for path in sorted((HERE / "models").glob("*.xml")):
+        if "<mujocoinclude>" not in path.read_text():
+            from_file = mujoco.MjModel.from_xml_path
+            models[path.stem] = {
+                "facts": Facts(from_file(str(path))).all(),
+                "moved": moved(from_file(str(path))),
+            }
     # Others' model is compared with and not kept. Its floor is painted with a material that the file lacks.
     if REFERENCE.is_file() and FOLDER != HERE:
         reference = re.sub(' material="[a-z]*"', "", REFERENCE.read_text())
-        models["reference"] = {"facts": Facts(reference).all()}
+        models["reference"] = {"facts": Facts(compiled(reference)).all()}
     for seed in (1, 2):
         xml = Random(seed).xml()
-        models[f"random {seed}"] = {"xml": xml, "facts": Facts(xml).all()}
+        models[f"random {seed}"] = {"xml": xml, "facts": Facts(compiled(xml)).all()}
     (FOLDER / "model.json").write_text(json.dumps(models, separators=(",", ":")))
 
 

@@ -106,3 +106,21 @@ fn marks_stand_above_the_levels() {
     }
     assert!(picture.has([0xd5, 0x5e, 0x00]), "the mark");
 }
+
+#[test]
+fn a_training_with_a_discriminator_has_its_panels() {
+    let plain = drawn(|path| learning_curve::draw(path, &training(), &[], &[]));
+    let styled: Vec<Point> = training()
+        .into_iter()
+        .map(|point| Point {
+            fall: point.success,
+            style_reward: Some(0.4),
+            recorded_accuracy: Some(0.99),
+            agent_accuracy: Some(0.97),
+            ..point
+        })
+        .collect();
+    let picture = drawn(|path| learning_curve::draw(path, &styled, &[], &[]));
+    assert!(picture.height > plain.height + 3 * 250);
+    assert!(picture.has([0xd5, 0x5e, 0x00]), "the recordings' line");
+}

@@ -26,7 +26,7 @@ crate::shader_params! {
 /// [`model_table`](fn@super::model_table::model_table), `poses` `[bodies * POSE_DIM][envs]`.
 /// Written are `contacts` `[max_contacts * CONTACT_DIM][envs]` in the world, `contact_ids`
 /// `[max_contacts][envs]`, pair times 8 plus point, and `counts` `[2][envs]`: contacts kept, and
-/// those that found no room.
+/// those that found no room, the shallowest.
 pub fn launch(
     gpu: &Gpu,
     geoms: &Buffer<f32>,

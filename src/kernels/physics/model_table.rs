@@ -7,6 +7,9 @@ use crate::physics::factor::columns;
 use crate::physics::model::{Body, Dof, Joint, JointKind, Model, SolverParams};
 use crate::physics::simulator::SolverOptions;
 
+/// Contacts of a world that shaders have room for at most.
+pub const CONTACT_BOUND: u32 = crate::gpu::shader::solve_and_integrate::constants::CONTACT_BOUND;
+
 /// What does not fit a shader's fixed arrays.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
@@ -93,7 +96,7 @@ fn fits(model: &Model, options: &SolverOptions) -> Result<(), TooLarge> {
         ("degrees of freedom", model.dofs.len(), at::WORLD_DOF_BOUND),
         ("joints", model.joints.len(), solve::JOINT_BOUND),
         ("geoms", model.geoms.len(), contact::GEOM_BOUND),
-        ("contacts", options.max_contacts, solve::CONTACT_BOUND),
+        ("contacts", options.max_contacts, CONTACT_BOUND),
     ] {
         let most = most as usize;
         if found > most {
@@ -161,10 +164,22 @@ fn dof(dof: &Dof, last: usize) -> Vec<u32> {
     let mut words: Vec<u32> = row.map(|n| n as u32).to_vec();
     words.extend(reals(&[dof.armature]));
     words.push(at::NONE);
-    let drive = dof
-        .drive
-        .map(|drive| [drive.stiffness, drive.damping, drive.limit]);
+    let drive = dof.drive.map(|drive| {
+        let [least, most] = drive.control;
+        [
+            drive.stiffness,
+            drive.damping,
+            drive.limit,
+            drive.torque,
+            least,
+            most,
+        ]
+    });
     words.extend(reals(&drive.unwrap_or_default()));
+    let spring = dof
+        .spring
+        .map(|spring| [spring.stiffness, spring.damping, spring.rest]);
+    words.extend(reals(&spring.unwrap_or_default()));
     words.extend(reals(&[dof.invweight0]));
     words.push(dof.body as u32);
     words

@@ -7,6 +7,7 @@ use super::strided::{gather, scatter};
 use crate::gpu::shader::make_constraints::constants as at;
 use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::physics::constraints::{ContactConstraint, LimitConstraint};
+use crate::physics::model::Model;
 use crate::physics::simulator::{Simulator, SimulatorState};
 
 crate::shader_params! {
@@ -24,6 +25,23 @@ pub const NO_CONTACT: u32 = u32::MAX;
 /// Numbers of `warm_start` of an environment: ids of contacts, the forces of their edges, those of limits.
 pub fn warm_start_dim(max_contacts: usize, joints: usize) -> usize {
     5 * max_contacts + joints
+}
+
+/// Contacts that there is room for in a `warm_start` of so many numbers: the opposite of
+/// [`warm_start_dim`].
+pub fn warm_start_room(dim: usize, joints: usize) -> usize {
+    dim.saturating_sub(joints) / 5
+}
+
+/// The `warm_start` of a batch with another room for contacts; those beyond the new one start without a guess.
+pub fn with_room(model: &Model, warm_start: &[u32], envs: usize, room: [usize; 2]) -> Vec<u32> {
+    let mut world = SimulatorState::new(model);
+    let mut with_room = vec![0; warm_start_dim(room[1], model.joints.len()) * envs];
+    for env in 0..envs {
+        read_warm_start(warm_start, envs, env, room[0], &mut world);
+        write_warm_start(&world, &mut with_room, envs, env, room[1]);
+    }
+    with_room
 }
 
 /// Queues the shader on `gpu`.

@@ -1,33 +1,43 @@
 //! An element of the file, its attributes as numbers and words, and errors that say where it stands.
 
-use super::error::{MjcfError, Result};
+use super::error::{Checked, Fault};
 use super::grammar::Grammar;
+use super::source::Source;
 use roxmltree::{Attribute, Node, NodeId};
-use std::path::Path;
 
 /// Larger numbers are mistakes, and would overflow when squared.
 const LARGEST: f64 = 1e9;
 
 #[derive(Clone)]
 pub struct Element<'a> {
-    file: &'a Path,
+    source: &'a Source,
     node: Node<'a, 'a>,
     /// Those of default classes, which speak where this one is silent; the outermost class first.
     defaults: Vec<Node<'a, 'a>>,
+    /// Whether its class is not there, or perhaps another's: it is not blamed for what that would say.
+    classless: bool,
 }
 
 impl<'a> Element<'a> {
-    pub fn new(file: &'a Path, node: Node<'a, 'a>) -> Self {
+    pub fn new(source: &'a Source, node: Node<'a, 'a>) -> Self {
         Element {
-            file,
+            source,
             node,
             defaults: Vec::new(),
+            classless: false,
         }
     }
 
     pub fn with_defaults(self, defaults: &[Element<'a>]) -> Self {
         Element {
             defaults: defaults.iter().map(|element| element.node).collect(),
+            ..self
+        }
+    }
+
+    pub fn without_class(self) -> Self {
+        Element {
+            classless: true,
             ..self
         }
     }
@@ -45,19 +55,20 @@ impl<'a> Element<'a> {
     }
 
     pub fn children(&self) -> impl Iterator<Item = Element<'a>> + use<'a> {
-        let file = self.file;
+        let source = self.source;
         let elements = self.node.children().filter(Node::is_element);
-        elements.map(move |node| Element::new(file, node))
+        elements.map(move |node| Element::new(source, node))
     }
 
-    /// All children of the sections with this tag: a section may be repeated.
-    pub fn within(&self, tag: &'static str, grammar: &Grammar) -> Result<Vec<Element<'a>>> {
+    /// The children, if they are known, of the sections with this tag: a section may be repeated.
+    pub fn within(&self, tag: &'static str, grammar: &Grammar) -> Vec<Element<'a>> {
         let mut all = Vec::new();
         for section in self.sections(tag) {
-            section.check(grammar)?;
-            all.extend(section.children());
+            section.check(grammar);
+            let children = section.children();
+            all.extend(children.filter(|child| grammar.within.contains(&child.tag())));
         }
-        Ok(all)
+        all
     }
 
     /// The children with this tag.
@@ -67,10 +78,10 @@ impl<'a> Element<'a> {
 
     /// This one and all within that have a tag, parents before their children.
     pub fn nested(&self, tag: &'static str) -> impl Iterator<Item = Element<'a>> + use<'a> {
-        let file = self.file;
+        let source = self.source;
         let all = self.node.descendants();
         all.filter(move |node| node.has_tag_name(tag))
-            .map(move |node| Element::new(file, node))
+            .map(move |node| Element::new(source, node))
     }
 
     fn layers(&self) -> impl DoubleEndedIterator<Item = Node<'a, 'a>> {
@@ -92,7 +103,7 @@ impl<'a> Element<'a> {
     }
 
     /// The name of something else, which must be given.
-    pub fn naming(&self, name: &str) -> Result<&'a str> {
+    pub fn naming(&self, name: &str) -> Checked<&'a str> {
         let missing = || self.error(&format!("needs the attribute {name}"));
         self.word(name)
             .filter(|word| !word.is_empty())
@@ -100,7 +111,7 @@ impl<'a> Element<'a> {
     }
 
     /// One of several words, by its index among them.
-    pub fn choice(&self, name: &str, words: &[&str]) -> Result<Option<usize>> {
+    pub fn choice(&self, name: &str, words: &[&str]) -> Checked<Option<usize>> {
         let Some(word) = self.word(name) else {
             return Ok(None);
         };
@@ -110,7 +121,7 @@ impl<'a> Element<'a> {
     }
 
     /// Exactly `N` numbers.
-    pub fn numbers<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>> {
+    pub fn numbers<const N: usize>(&self, name: &str) -> Checked<Option<[f64; N]>> {
         let Some(attribute) = self.attribute(name) else {
             return Ok(None);
         };
@@ -120,13 +131,13 @@ impl<'a> Element<'a> {
         numbers.try_into().map_err(count).map(Some)
     }
 
-    pub fn number(&self, name: &str) -> Result<Option<f64>> {
+    pub fn number(&self, name: &str) -> Checked<Option<f64>> {
         Ok(self.numbers::<1>(name)?.map(|[number]| number))
     }
 
     /// Up to `N` numbers, the last of which may be left out: each class, and last the element,
     /// overwrites as many as it has.
-    pub fn overlay<const N: usize>(&self, name: &str, mut values: [f64; N]) -> Result<[f64; N]> {
+    pub fn overlay<const N: usize>(&self, name: &str, mut values: [f64; N]) -> Checked<[f64; N]> {
         for attribute in self.layers().filter_map(|node| attribute(node, name)) {
             let numbers = self.parse(&attribute)?;
             let found = numbers.len();
@@ -142,59 +153,78 @@ impl<'a> Element<'a> {
     /// The innermost layer for which there is an answer.
     pub fn innermost<T>(
         &self,
-        answer: impl Fn(&Element<'a>) -> Result<Option<T>>,
-    ) -> Result<Option<T>> {
+        answer: impl Fn(&Element<'a>) -> Checked<Option<T>>,
+    ) -> Checked<Option<T>> {
         let alone = self.layers().rev();
         let mut answers =
-            alone.filter_map(|node| answer(&Element::new(self.file, node)).transpose());
+            alone.filter_map(|node| answer(&Element::new(self.source, node)).transpose());
         answers.next().transpose()
     }
 
-    /// Refuses attributes and elements within that are not known, and attributes, those of classes
-    /// among them, that must keep a value but do not.
-    pub fn check(&self, grammar: &Grammar) -> Result<()> {
+    /// Reports attributes and elements within that are not known, and attributes, those of classes among
+    /// them, that must keep a value but do not.
+    pub fn check(&self, grammar: &Grammar) {
         for attribute in self.layers().flat_map(|node| node.attributes()) {
             let only = grammar.only(attribute.name()).unwrap_or_default();
             let kept = only.iter().any(|value| same(value, attribute.value()));
             if !only.is_empty() && !kept {
                 let only = format!("only {} is supported", only.join(" or "));
-                return Err(self.faulty(&attribute, &only));
+                self.report(self.faulty(&attribute, &only));
             }
         }
-        let mut own = self.node.attributes();
-        if let Some(unknown) = own.find(|attribute| !grammar.knows(attribute.name())) {
-            return Err(self.faulty(&unknown, "this attribute is not supported; remove it"));
+        let own = self.node.attributes();
+        for unknown in own.filter(|attribute| !grammar.knows(attribute.name())) {
+            self.report(self.faulty(&unknown, "this attribute is not supported; remove it"));
         }
-        let known = |child: &Element| grammar.within.contains(&child.tag());
-        match self.children().find(|child| !known(child)) {
-            None => Ok(()),
-            Some(child) => Err(child.error(&format!(
-                "is not supported in <{}>; remove it if the model can do without",
-                self.tag()
-            ))),
+        for child in self.children() {
+            if !grammar.within.contains(&child.tag()) {
+                self.report(child.error(&format!(
+                    "is not supported in <{}>; remove it if the model can do without",
+                    self.tag()
+                )));
+            }
+        }
+    }
+
+    /// Takes note of what is wrong, so that the rest of the file can be looked at before it is refused.
+    pub fn report(&self, fault: Fault) {
+        self.source.report(fault);
+    }
+
+    /// What was read, unless it was wrong: that is reported.
+    pub fn keep<T>(&self, read: Checked<T>) -> Option<T> {
+        match read {
+            Ok(read) => Some(read),
+            Err(fault) if self.classless && fault.at == self.node.range().start => None,
+            Err(fault) => {
+                self.report(fault);
+                None
+            }
         }
     }
 
     /// An error of this element.
-    pub fn error(&self, problem: &str) -> MjcfError {
-        self.at(
-            self.node.range().start,
-            format!("{} {problem}", self.title()),
-        )
+    pub fn error(&self, problem: &str) -> Fault {
+        Fault {
+            at: self.node.range().start,
+            problem: format!("{} {problem}", self.title()),
+        }
     }
 
     /// An error of what is written in one of its attributes.
-    pub fn wrong(&self, name: &str, problem: &str) -> MjcfError {
+    pub fn wrong(&self, name: &str, problem: &str) -> Fault {
         let Some(attribute) = self.attribute(name) else {
             return self.error(&format!("lacks {name}: {problem}"));
         };
         self.faulty(&attribute, problem)
     }
 
-    fn faulty(&self, attribute: &Attribute, problem: &str) -> MjcfError {
+    fn faulty(&self, attribute: &Attribute, problem: &str) -> Fault {
         let (name, value) = (attribute.name(), attribute.value());
-        let problem = format!("{} has {name}=\"{value}\": {problem}", self.title());
-        self.at(attribute.range().start, problem)
+        Fault {
+            at: attribute.range().start,
+            problem: format!("{} has {name}=\"{value}\": {problem}", self.title()),
+        }
     }
 
     fn title(&self) -> String {
@@ -204,15 +234,7 @@ impl<'a> Element<'a> {
         }
     }
 
-    fn at(&self, byte: usize, problem: String) -> MjcfError {
-        MjcfError::Mjcf {
-            path: self.file.to_path_buf(),
-            line: self.node.document().text_pos_at(byte).row,
-            problem,
-        }
-    }
-
-    fn parse(&self, attribute: &Attribute) -> Result<Vec<f64>> {
+    fn parse(&self, attribute: &Attribute) -> Checked<Vec<f64>> {
         let number = |word: &str| match word.parse::<f64>() {
             Ok(value) if value.abs() <= LARGEST => Ok(value),
             Ok(_) => Err(self.faulty(attribute, &format!("'{word}' is no usable number"))),

@@ -1,7 +1,7 @@
 //! Which geoms may touch: all those that neither their kinds nor their bodies keep apart.
 
 use super::element::Element;
-use super::error::Result;
+use super::error::Checked;
 use super::grammar::{CONTACT, EXCLUDE};
 use super::worldbody::WorldBuilder;
 use crate::physics::collision::PairKind;
@@ -9,13 +9,12 @@ use crate::physics::model::{Geom, GeomShape};
 use std::collections::HashSet;
 
 impl<'a> WorldBuilder<'a> {
-    pub fn pairs(&mut self, root: &Element<'a>) -> Result<()> {
-        let apart = self.excluded(root)?;
+    pub fn pairs(&mut self, root: &Element<'a>) {
+        let apart = self.excluded(root);
         let geoms = self.model.geoms.len();
         let all = (0..geoms).flat_map(|a| (a + 1..geoms).map(move |b| [a, b]));
         let may: Vec<[usize; 2]> = all.filter(|&pair| self.may_touch(pair, &apart)).collect();
         self.model.pairs = ordered(&self.model.geoms, may);
-        Ok(())
     }
 
     fn may_touch(&self, pair: [usize; 2], apart: &HashSet<[usize; 2]>) -> bool {
@@ -32,30 +31,36 @@ impl<'a> WorldBuilder<'a> {
     }
 
     /// Pairs of elements, both ways round.
-    fn excluded(&mut self, root: &Element<'a>) -> Result<HashSet<[usize; 2]>> {
+    fn excluded(&mut self, root: &Element<'a>) -> HashSet<[usize; 2]> {
         let mut apart = HashSet::new();
-        for child in root.within("contact", &CONTACT)? {
-            child.check(&EXCLUDE)?;
-            self.name(&child)?;
-            let [a, b] = [self.named(&child, "body1")?, self.named(&child, "body2")?];
-            apart.extend([[a, b], [b, a]]);
+        for child in root.within("contact", &CONTACT) {
+            child.check(&EXCLUDE);
+            self.name(&child);
+            let bodies = ["body1", "body2"].map(|name| child.keep(self.named(&child, name)));
+            if let [Some(Some(a)), Some(Some(b))] = bodies {
+                apart.extend([[a, b], [b, a]]);
+            }
         }
-        Ok(apart)
+        apart
     }
 
-    fn named(&self, element: &Element, attribute: &str) -> Result<usize> {
+    /// The body that an attribute names; none if it may be one that could not be read.
+    fn named(&self, element: &Element, attribute: &str) -> Checked<Option<usize>> {
         let name = element.naming(attribute)?;
         if name == "world" {
-            return Ok(0);
+            return Ok(Some(0));
         }
         let mut names = self.elements.iter().map(|known| known.element.name());
-        let found = names.position(|known| known == name);
-        found.ok_or_else(|| element.wrong(attribute, "there is no such body"))
+        match names.position(|known| known == name) {
+            None if self.named_all("body") => {
+                Err(element.wrong(attribute, "there is no such body"))
+            }
+            body => Ok(body),
+        }
     }
 }
 
-/// Pairs in the model's order: those with planes first, so that a full list of contacts loses them last,
-/// and each family together, so that shaders take one after another.
+/// Pairs in the model's order: each family together, so that shaders take one after another.
 pub fn ordered(geoms: &[Geom], pairs: Vec<[usize; 2]>) -> Vec<[usize; 2]> {
     let turned = |[a, b]: [usize; 2]| match rank(&geoms[a]) <= rank(&geoms[b]) {
         true => [a, b],

@@ -1,7 +1,7 @@
 //! Where an element puts its frame: `pos`, and a rotation in one of five ways.
 
 use super::element::Element;
-use super::error::Result;
+use super::error::Checked;
 use super::settings::MjcfSettings;
 use glam::{DMat3, DQuat, DVec3};
 use std::ops::Mul;
@@ -27,7 +27,7 @@ impl Mul for Frame {
 }
 
 impl Frame {
-    pub fn read(element: &Element, settings: &MjcfSettings) -> Result<Frame> {
+    pub fn read(element: &Element, settings: &MjcfSettings) -> Checked<Frame> {
         let position = element.numbers("pos")?.unwrap_or_default();
         Ok(Frame {
             position: DVec3::from_array(position),
@@ -37,12 +37,12 @@ impl Frame {
 }
 
 /// The rotation that is given, if one is: the element's own way replaces that of a class.
-pub fn orientation(element: &Element, settings: &MjcfSettings) -> Result<Option<DQuat>> {
+pub fn orientation(element: &Element, settings: &MjcfSettings) -> Checked<Option<DQuat>> {
     element.innermost(|layer| one_turn(layer, settings))
 }
 
 /// What one layer says.
-fn one_turn(element: &Element, settings: &MjcfSettings) -> Result<Option<DQuat>> {
+fn one_turn(element: &Element, settings: &MjcfSettings) -> Checked<Option<DQuat>> {
     let ways = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
     let mut given = ways.into_iter().filter(|way| element.word(way).is_some());
     let way = given.next();
@@ -60,7 +60,7 @@ fn one_turn(element: &Element, settings: &MjcfSettings) -> Result<Option<DQuat>>
     rotation.map(Some)
 }
 
-fn quat(element: &Element) -> Result<DQuat> {
+fn quat(element: &Element) -> Checked<DQuat> {
     let [w, x, y, z] = element.numbers("quat")?.unwrap_or_default();
     let quat = DQuat::from_xyzw(x, y, z, w);
     match quat.length() > SHORTEST {
@@ -69,13 +69,13 @@ fn quat(element: &Element) -> Result<DQuat> {
     }
 }
 
-fn axisangle(element: &Element, settings: &MjcfSettings) -> Result<DQuat> {
+fn axisangle(element: &Element, settings: &MjcfSettings) -> Checked<DQuat> {
     let [x, y, z, angle] = element.numbers("axisangle")?.unwrap_or_default();
     let axis = unit(element, "axisangle", DVec3::new(x, y, z))?;
     Ok(DQuat::from_axis_angle(axis, angle * settings.angle))
 }
 
-fn xyaxes(element: &Element) -> Result<DQuat> {
+fn xyaxes(element: &Element) -> Checked<DQuat> {
     let [a, b, c, d, e, f] = element.numbers("xyaxes")?.unwrap_or_default();
     let x = unit(element, "xyaxes", DVec3::new(a, b, c))?;
     let y = DVec3::new(d, e, f);
@@ -84,14 +84,14 @@ fn xyaxes(element: &Element) -> Result<DQuat> {
     Ok(DQuat::from_mat3(&axes).normalize())
 }
 
-fn zaxis(element: &Element) -> Result<DQuat> {
+fn zaxis(element: &Element) -> Checked<DQuat> {
     let axis = element.numbers("zaxis")?.unwrap_or_default();
     let axis = unit(element, "zaxis", DVec3::from_array(axis))?;
     Ok(from_z(axis))
 }
 
 /// About x, then about the y and the z that this has turned.
-fn euler(element: &Element, settings: &MjcfSettings) -> Result<DQuat> {
+fn euler(element: &Element, settings: &MjcfSettings) -> Checked<DQuat> {
     let angles = element.numbers::<3>("euler")?.unwrap_or_default();
     let [x, y, z] = angles.map(|angle| angle * settings.angle);
     let rotation =
@@ -99,7 +99,7 @@ fn euler(element: &Element, settings: &MjcfSettings) -> Result<DQuat> {
     Ok(rotation.normalize())
 }
 
-pub fn unit(element: &Element, attribute: &str, vector: DVec3) -> Result<DVec3> {
+pub fn unit(element: &Element, attribute: &str, vector: DVec3) -> Checked<DVec3> {
     match vector.length() > SHORTEST {
         true => Ok(vector.normalize()),
         false => Err(element.wrong(attribute, "this points in no direction")),

@@ -36,10 +36,13 @@ pub const MUJOCO: Grammar = Grammar {
         "contact",
         "custom",
         "default",
+        "equality",
+        "keyframe",
         "option",
         "sensor",
         "size",
         "statistic",
+        "tendon",
         "visual",
         "worldbody",
     ],
@@ -70,7 +73,7 @@ pub const COMPILER: Grammar = Grammar {
         ("inertiagrouprange", &["0 5"]),
         ("settotalmass", &["-1"]),
     ],
-    ..NOTHING
+    within: &["lengthrange"],
 };
 
 /// The simulator has a time step, a solver and an integrator of its own.
@@ -140,19 +143,44 @@ pub const CLASS: Grammar = Grammar {
     read: &["class"],
     // Of those that are not read, nothing that uses them is.
     within: &[
-        "default", "joint", "geom", "motor", "position", "camera", "equality", "light", "material",
-        "mesh", "pair", "site", "tendon",
+        "default", "joint", "geom", "general", "motor", "position", "camera", "equality", "light",
+        "material", "mesh", "pair", "site", "tendon",
     ],
     ..NOTHING
 };
 
 pub const WORLD: Grammar = Grammar {
-    within: &["body", "geom", "camera", "light", "site"],
+    within: &["body", "frame", "geom", "camera", "light", "site"],
+    ..NOTHING
+};
+
+pub const FRAME: Grammar = Grammar {
+    read: &[
+        "name",
+        "childclass",
+        "pos",
+        "quat",
+        "axisangle",
+        "xyaxes",
+        "zaxis",
+        "euler",
+    ],
+    within: &[
+        "body",
+        "frame",
+        "joint",
+        "freejoint",
+        "inertial",
+        "geom",
+        "camera",
+        "light",
+        "site",
+    ],
     ..NOTHING
 };
 
 pub const ACTUATOR: Grammar = Grammar {
-    within: &["motor", "position"],
+    within: &["general", "motor", "position"],
     ..NOTHING
 };
 
@@ -178,16 +206,7 @@ pub const BODY: Grammar = Grammar {
         ("gravcomp", &["0"]),
         ("sleep", &["auto"]),
     ],
-    within: &[
-        "body",
-        "joint",
-        "freejoint",
-        "inertial",
-        "geom",
-        "camera",
-        "light",
-        "site",
-    ],
+    within: FRAME.within,
 };
 
 pub const INERTIAL: Grammar = Grammar {
@@ -224,19 +243,19 @@ pub const JOINT: Grammar = Grammar {
         "armature",
         "stiffness",
         "damping",
+        "springref",
+        "margin",
+        "actuatorfrcrange",
+        "actuatorfrclimited",
         "solreflimit",
         "solimplimit",
     ],
     ignored: &["group", "user", "solreffriction", "solimpfriction"],
     fixed: &[
-        ("actuatorfrclimited", &["false", "auto"]),
-        ("actuatorfrcrange", &["0 0"]),
         ("actuatorgravcomp", &["false"]),
         ("frictionloss", &["0"]),
-        ("margin", &["0"]),
         ("ref", &["0"]),
         ("springdamper", &["0 0"]),
-        ("springref", &["0"]),
     ],
     ..NOTHING
 };
@@ -262,8 +281,9 @@ pub const GEOM: Grammar = Grammar {
         "solimp",
         "contype",
         "conaffinity",
+        "mesh",
     ],
-    ignored: &["group", "user", "rgba", "material", "fluidcoef"],
+    ignored: &["group", "user", "rgba", "material", "fluidcoef", "fitscale"],
     fixed: &[
         ("fluidshape", &["none"]),
         ("gap", &["0"]),
@@ -283,30 +303,83 @@ pub const POSITION: Grammar = Grammar {
         "gear",
         "kp",
         "kv",
+        "inheritrange",
+        "ctrlrange",
+        "ctrllimited",
         "forcerange",
         "forcelimited",
     ],
-    ignored: &["group", "user"],
+    ignored: &["group", "user", "lengthrange", "cranklength"],
+    fixed: &[("dampratio", &["0"]), ("timeconst", &["0"])],
+    ..NOTHING
+};
+
+pub const MOTOR: Grammar = Grammar {
+    read: &[
+        "name",
+        "class",
+        "joint",
+        "gear",
+        "ctrlrange",
+        "ctrllimited",
+        "forcerange",
+        "forcelimited",
+    ],
+    ignored: &["group", "user", "lengthrange", "cranklength"],
+    ..NOTHING
+};
+
+pub const GENERAL: Grammar = Grammar {
+    read: &[
+        "name",
+        "class",
+        "joint",
+        "gear",
+        "gainprm",
+        "biastype",
+        "biasprm",
+        "ctrlrange",
+        "ctrllimited",
+        "forcerange",
+        "forcelimited",
+    ],
+    ignored: &["group", "user", "lengthrange", "cranklength", "dynprm"],
     fixed: &[
-        ("ctrllimited", &["false", "auto"]),
-        ("ctrlrange", &["0 0"]),
-        ("dampratio", &["0"]),
-        ("inheritrange", &["0"]),
-        ("timeconst", &["0"]),
+        ("actlimited", &["false", "auto"]),
+        ("dyntype", &["none"]),
+        ("gaintype", &["fixed"]),
     ],
     ..NOTHING
 };
 
-/// The limits of a motor's control are those that make the gear the largest torque.
-pub const MOTOR: Grammar = Grammar {
-    read: &["name", "class", "joint", "gear"],
-    ignored: &["group", "user", "ctrllimited"],
-    fixed: &[
-        ("ctrlrange", &["-1 1"]),
-        ("forcelimited", &["false", "auto"]),
-        ("forcerange", &["0 0"]),
-    ],
+pub const TENDONS: Grammar = Grammar {
+    within: &["fixed", "spatial"],
     ..NOTHING
+};
+
+/// A tendon that pulls at nothing: it measures.
+pub const TENDON: Grammar = Grammar {
+    read: &["name", "class", "limited", "range"],
+    ignored: &[
+        "group",
+        "user",
+        "material",
+        "rgba",
+        "width",
+        "springlength",
+        "margin",
+        "solreflimit",
+        "solimplimit",
+        "solreffriction",
+        "solimpfriction",
+    ],
+    fixed: &[
+        ("armature", &["0"]),
+        ("damping", &["0"]),
+        ("frictionloss", &["0"]),
+        ("stiffness", &["0"]),
+    ],
+    within: &["joint", "site", "geom", "pulley"],
 };
 
 pub const EXCLUDE: Grammar = Grammar {

@@ -2,7 +2,7 @@
 //! small and large parts lose too much otherwise.
 
 use super::element::Element;
-use super::error::Result;
+use super::error::Checked;
 use super::frame::{Frame, orientation};
 use super::settings::MjcfSettings;
 use super::shape::GeomShape64;
@@ -12,13 +12,24 @@ use std::f64::consts::PI;
 /// Less than this does not move as a body should: MuJoCo's bound on mass and moments of inertia.
 const LEAST: f64 = 1e-15;
 
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct Mass {
     /// kg
     pub mass: f64,
     pub com: DVec3,
     /// About the centre, kg m^2.
     pub inertia: DMat3,
+}
+
+impl Default for Mass {
+    /// Nothing. The default of a matrix would be the identity.
+    fn default() -> Mass {
+        Mass {
+            mass: 0.0,
+            com: DVec3::ZERO,
+            inertia: DMat3::ZERO,
+        }
+    }
 }
 
 impl Mass {
@@ -31,6 +42,14 @@ impl Mass {
             GeomShape64::Box { half } => {
                 let squares = half * half;
                 (DVec3::splat(squares.element_sum()) - squares) / 3.0
+            }
+            GeomShape64::Cylinder { radius, half } => {
+                let across = radius * radius / 4.0 + half * half / 3.0;
+                DVec3::new(across, across, 0.5 * radius * radius)
+            }
+            GeomShape64::Ellipsoid { half } => {
+                let squares = half * half;
+                (DVec3::splat(squares.element_sum()) - squares) / 5.0
             }
         };
         Mass {
@@ -64,7 +83,7 @@ impl Mass {
     }
 
     /// What the element `inertial` says.
-    pub fn read(element: &Element, settings: &MjcfSettings) -> Result<Mass> {
+    pub fn read(element: &Element, settings: &MjcfSettings) -> Checked<Mass> {
         let frame = Frame::read(element, settings)?;
         if element.word("pos").is_none() {
             return Err(element.error("needs pos, the centre of mass"));
@@ -106,7 +125,7 @@ fn displaced(at: DVec3) -> DMat3 {
 }
 
 /// The inertia about the centre of mass, in the frame that is given with it.
-fn moments(element: &Element, settings: &MjcfSettings) -> Result<DMat3> {
+fn moments(element: &Element, settings: &MjcfSettings) -> Checked<DMat3> {
     let diagonal = element.numbers::<3>("diaginertia")?;
     let full = element.numbers::<6>("fullinertia")?;
     let (name, inertia) = match (diagonal, full) {

@@ -1,49 +1,61 @@
 //! `compiler` and `option`: how the rest is to be read, and what must be as it is here.
 
 use super::element::Element;
-use super::error::Result;
+use super::error::Checked;
 use super::grammar::{COMPILER, FLAG, OPTION};
+use super::options::MjcfOptions;
 
 pub struct MjcfSettings {
     /// Radians that the file's unit of angles has.
     pub angle: f64,
     /// A range that is given limits.
     pub autolimits: bool,
-    /// Masses are those of the geoms, whatever `inertial` says.
-    pub from_geoms: bool,
+    /// Where masses come from.
+    pub masses: MassSource,
+    pub options: MjcfOptions,
+}
+
+/// Where the mass of a body comes from (`inertiafromgeom`).
+#[derive(Clone, Copy, PartialEq)]
+pub enum MassSource {
+    /// `inertial` alone.
+    Inertial,
+    /// Geoms, whatever `inertial` says.
+    Geoms,
+    /// `inertial`, or geoms where there is none.
+    Auto,
 }
 
 impl MjcfSettings {
-    pub fn read(root: &Element) -> Result<MjcfSettings> {
+    pub fn read(root: &Element, options: MjcfOptions) -> MjcfSettings {
         let mut settings = MjcfSettings {
             angle: 1_f64.to_radians(),
             autolimits: true,
-            from_geoms: false,
+            masses: MassSource::Auto,
+            options,
         };
         for compiler in root.sections("compiler") {
-            settings.compiler(&compiler)?;
+            settings.compiler(&compiler);
         }
-        for option in root.sections("option") {
-            option.check(&OPTION)?;
-            for flag in option.children() {
-                flag.check(&FLAG)?;
-            }
+        for flag in root.within("option", &OPTION) {
+            flag.check(&FLAG);
         }
-        Ok(settings)
+        settings
     }
 
-    fn compiler(&mut self, element: &Element) -> Result<()> {
-        element.check(&COMPILER)?;
-        if let Some(unit) = element.choice("angle", &["degree", "radian"])? {
+    fn compiler(&mut self, element: &Element) {
+        element.check(&COMPILER);
+        let chosen = |name, words: &[&str]| element.keep(element.choice(name, words)).flatten();
+        if let Some(unit) = chosen("angle", &["degree", "radian"]) {
             self.angle = [1_f64.to_radians(), 1.0][unit];
         }
-        if let Some(choice) = element.choice("autolimits", &["false", "true"])? {
+        if let Some(choice) = chosen("autolimits", &["false", "true"]) {
             self.autolimits = choice == 1;
         }
-        if let Some(choice) = element.choice("inertiafromgeom", &["auto", "true"])? {
-            self.from_geoms = choice == 1;
+        if let Some(choice) = chosen("inertiafromgeom", &["false", "true", "auto"]) {
+            use MassSource::{Auto, Geoms, Inertial};
+            self.masses = [Inertial, Geoms, Auto][choice];
         }
-        Ok(())
     }
 
     /// The range that limits `element`, if one does. `limited` names the attribute that says so.
@@ -52,7 +64,7 @@ impl MjcfSettings {
         element: &Element,
         range: &str,
         limited: &str,
-    ) -> Result<Option<[f64; 2]>> {
+    ) -> Checked<Option<[f64; 2]>> {
         let choice = element
             .choice(limited, &["false", "true", "auto"])?
             .unwrap_or(2);
@@ -71,6 +83,15 @@ impl MjcfSettings {
             )),
             0 => Ok(None),
             _ => Ok(given.then_some(values)),
+        }
+    }
+
+    /// The bound of a range that has zero in its middle, if one limits `element`.
+    pub fn bound(&self, element: &Element, range: &str, limited: &str) -> Checked<f64> {
+        match self.limits(element, range, limited)? {
+            None => Ok(f64::from(f32::MAX)),
+            Some([low, high]) if low == -high => Ok(high),
+            Some(_) => Err(element.wrong(range, "supported are limits like \"-5 5\"")),
         }
     }
 }

@@ -4,18 +4,20 @@ use crate::physics::model::GeomShape;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A [`GeomShape`] in double precision.
+/// A [`GeomShape`] in double precision, or a shape that can weigh but not touch.
 pub enum GeomShape64 {
     Plane,
     Sphere { radius: f64 },
     Capsule { radius: f64, half: f64 },
     Box { half: DVec3 },
+    Cylinder { radius: f64, half: f64 },
+    Ellipsoid { half: DVec3 },
 }
 
 impl GeomShape64 {
-    /// The shape in single precision.
-    pub fn narrowed(&self) -> GeomShape {
-        match *self {
+    /// The shape in single precision, if it is one that can touch.
+    pub fn narrowed(&self) -> Option<GeomShape> {
+        Some(match *self {
             GeomShape64::Plane => GeomShape::Plane,
             GeomShape64::Sphere { radius } => GeomShape::Sphere {
                 radius: radius as f32,
@@ -27,7 +29,8 @@ impl GeomShape64 {
             GeomShape64::Box { half } => GeomShape::Box {
                 half: half.as_vec3(),
             },
-        }
+            GeomShape64::Cylinder { .. } | GeomShape64::Ellipsoid { .. } => return None,
+        })
     }
 
     /// m^3; none of a plane.
@@ -39,6 +42,8 @@ impl GeomShape64 {
                 PI * radius * radius * (2.0 * half + 4.0 / 3.0 * radius)
             }
             GeomShape64::Box { half } => 8.0 * half.element_product(),
+            GeomShape64::Cylinder { radius, half } => PI * radius * radius * 2.0 * half,
+            GeomShape64::Ellipsoid { half } => 4.0 / 3.0 * PI * half.element_product(),
         }
     }
 }

@@ -1,4 +1,9 @@
 use super::worlds::*;
+use footwork::kernels::physics::solve_and_integrate::{
+    read_warm_start, warm_start_room, with_room, write_warm_start,
+};
+use footwork::physics::scenes::humanoid;
+use footwork::physics::simulator::SimulatorState;
 
 #[test]
 fn agrees() {
@@ -36,4 +41,31 @@ fn agrees() {
             );
         }
     }
+}
+
+#[test]
+fn warm_starts_move_to_another_room() {
+    let (model, envs) = (humanoid(), 3);
+    let joints = model.joints.len();
+    let mut warm_start = vec![0; warm_start_dim(20, joints) * envs];
+    for env in 0..envs {
+        let count = 6 * env as u32;
+        let world = SimulatorState {
+            contact_ids: (0..count).collect(),
+            contact_forces: (0..count).map(|id| [id as f32; 4]).collect(),
+            limit_forces: (0..joints).map(|joint| joint as f32).collect(),
+            ..SimulatorState::new(&model)
+        };
+        write_warm_start(&world, &mut warm_start, envs, env, 20);
+    }
+    assert_eq!(warm_start_room(warm_start.len() / envs, joints), 20);
+    let larger = with_room(&model, &warm_start, envs, [20, 32]);
+    assert_eq!(with_room(&model, &larger, envs, [32, 20]), warm_start);
+    // Those beyond a smaller one are forgotten.
+    let smaller = with_room(&model, &warm_start, envs, [20, 8]);
+    let mut world = SimulatorState::new(&model);
+    read_warm_start(&smaller, envs, 2, 8, &mut world);
+    assert_eq!(world.contact_ids, (0..8).collect::<Vec<u32>>());
+    assert_eq!(world.contact_forces[7], [7.0; 4]);
+    assert_eq!(world.limit_forces[joints - 1], (joints - 1) as f32);
 }

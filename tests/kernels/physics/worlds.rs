@@ -235,13 +235,13 @@ pub fn scenes() -> [(&'static str, Model, usize); 4] {
     ]
 }
 
-/// A tree that is fastened, two hinges in a body, bodies without drive or mass, contacts without friction
-/// and with another rise of impedance.
+/// A tree that is fastened, two hinges in a body, bodies without drive or mass, springs, dampers and motors,
+/// contacts without friction and with another rise of impedance.
 pub const ODD: &str = r#"<mujoco model="odd">
   <worldbody>
     <geom name="ground" type="plane" size="0 0 1"/>
     <body name="mast" pos="0 0 .09">
-      <joint name="yaw" axis="0 0 1"/>
+      <joint name="yaw" axis="0 0 1" stiffness="6" damping=".3" springref="20"/>
       <joint name="pitch" axis="0 1 0" range="-60 60"/>
       <geom name="mast" type="capsule" fromto="0 0 0 .3 0 0" size=".1" condim="1"/>
       <body name="tip" pos=".3 0 0"/>
@@ -251,15 +251,16 @@ pub const ODD: &str = r#"<mujoco model="odd">
       </body>
     </body>
     <body name="ball" pos=".2 0 .5">
-      <freejoint name="ball"/>
+      <joint name="ball" type="free" damping=".4"/>
       <geom name="ball" size=".15" condim="1"/>
       <body name="pendulum">
-        <joint name="pendulum" type="ball"/>
+        <joint name="pendulum" type="ball" stiffness="2" damping=".1"/>
         <geom name="pendulum" type="box" size=".05 .05 .2" pos="0 0 -.2"/>
       </body>
     </body>
   </worldbody>
-  <actuator><position name="arm" joint="arm" kp="50" kv="5" forcerange="-10 10"/></actuator>
+  <actuator><position name="arm" joint="arm" kp="50" kv="5" forcerange="-10 10"/>
+    <motor joint="pitch" gear="-15" ctrlrange="-.3 .5"/><motor joint="pendulum" gear="0 0 4" forcerange="-.5 .5"/></actuator>
 </mujoco>"#;
 
 /// Compares fields `from..to` of `[fields][envs]`, an environment at a time.

@@ -5,10 +5,14 @@ use crate::golden;
 use crate::mocap::recordings;
 use footwork::physics::collision::PairKind;
 use footwork::physics::humanoid::{BODIES, humanoid, punching_box};
-use footwork::physics::mjcf;
+use footwork::physics::mjcf::{self, MjcfOptions};
 use footwork::physics::model::{Drive, GeomShape, JointKind, Model, SolverParams};
+use footwork::physics::simulator::{Simulator, SimulatorState, SolverOptions};
+use footwork::physics::spatial::Spatial;
 use glam::{Mat3, Quat, Vec3};
 use serde_json::Value;
+use std::path::Path;
+use std::sync::Arc;
 
 /// Of the largest number beside it: single precision.
 const CLOSE: f32 = 2e-6;
@@ -40,12 +44,101 @@ fn random_models_are_what_mujoco_makes_of_them() {
     assert!(compared >= 2);
 }
 
+const PUBLIC: [&str; 3] = ["gym", "robot", "suite"];
+
+/// A model of `tests/reference/models`, which have what public ones have.
+fn public(name: &str) -> Model {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/models");
+    let path = folder.join(name).with_extension("xml");
+    let read = mjcf::read(&path, MjcfOptions::default());
+    read.unwrap_or_else(|error| panic!("{error}")).model
+}
+
+#[test]
+fn models_like_public_ones_are_what_mujoco_makes_of_them() {
+    let golden = golden();
+    for name in PUBLIC {
+        compare(name, &public(name), &golden[name]["facts"]);
+    }
+}
+
+/// Springs, dampers, motors and general actuators, gears, limits of controls and torques.
+#[test]
+fn models_like_public_ones_move_as_in_mujoco() {
+    let golden = golden();
+    for name in PUBLIC {
+        let mut model = public(name);
+        model.pairs.clear();
+        let model = Arc::new(model);
+        let options = SolverOptions {
+            dt: 1e-4,
+            ..SolverOptions::converged(&model)
+        };
+        let mut simulator = Simulator::new(model.clone(), options);
+        let mut state = SimulatorState::new(&model);
+        let moved = &golden[name]["moved"];
+        let still = vec![Spatial::ZERO; model.bodies.len()];
+        for _ in 0..2000 {
+            simulator.step(&mut state, &numbers(&moved["controls"]), &still);
+        }
+        for (what, found, bar) in [("q", &state.q, 1e-3), ("v", &state.v, 2e-2)] {
+            let wanted = numbers(&moved[what]);
+            let size = wanted
+                .iter()
+                .fold(1.0_f32, |most, value| most.max(value.abs()));
+            for (index, (found, wanted)) in found.iter().zip(wanted).enumerate() {
+                assert!(
+                    (found - wanted).abs() < bar * size,
+                    "{name}, {what} {index}: {found} instead of {wanted} (of {size})"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn motors_of_pd_engines_are_drives_where_that_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pendulum.xml");
+    let text = |joint: &str, actuator: &str| {
+        format!(
+            r#"<mujoco><worldbody><body pos="0 0 1"><joint name="j" axis="0 1 0" {joint}/>
+            <geom type="capsule" fromto="0 0 0 0 0 -.5" size=".04"/></body></worldbody>
+            <actuator><{actuator} joint="j"/></actuator></mujoco>"#
+        )
+    };
+    std::fs::write(
+        &path,
+        text(
+            r#"stiffness="5" damping=".2""#,
+            r#"motor gear="40" ctrlrange="-1 1""#,
+        ),
+    )
+    .unwrap();
+    let position = parse(&text("", r#"position kp="5" kv=".2" forcerange="-40 40""#)).unwrap();
+    let as_drive = mjcf::read(&path, MjcfOptions { pd_motors: true }).unwrap();
+    assert_eq!(
+        (as_drive.model, as_drive.notes.len()),
+        (position.clone(), 0)
+    );
+    let as_torque = mjcf::read(&path, MjcfOptions::default()).unwrap();
+    let dof = &as_torque.model.dofs[0];
+    assert_eq!(dof.spring.unwrap().stiffness, 5.0);
+    assert_eq!(
+        (dof.drive.unwrap().torque, dof.drive.unwrap().stiffness),
+        (40.0, 0.0)
+    );
+    assert!(as_torque.notes[0].contains("--pd-motors"));
+}
+
 #[test]
 fn the_reference_humanoid_is_read_and_its_motors_are_drives() {
     let Some(path) = recordings("humanoid/ase/amp_humanoid.xml") else {
         return;
     };
-    let mut model = mjcf::read(&path).unwrap();
+    let model = mjcf::read(&path, MjcfOptions { pd_motors: true })
+        .unwrap()
+        .model;
     let drive = |name: &str| {
         let joint = model.joints.iter().find(|joint| joint.name == name);
         model.dofs[joint.unwrap().v].drive.unwrap()
@@ -60,18 +153,12 @@ fn the_reference_humanoid_is_read_and_its_motors_are_drives() {
         ("left_ankle_z", 400.0, 40.0, 90.0),
     ];
     for (name, stiffness, damping, limit) in expected {
-        let expected = Drive {
-            stiffness,
-            damping,
-            limit,
-        };
+        let expected = Drive::to_target(stiffness, damping, limit);
         assert_eq!(drive(name), expected, "{name}");
     }
     assert_eq!((model.nu(), model.nv()), (28, 34));
     // To MuJoCo, motors are no drives to a position.
-    for dof in &mut model.dofs {
-        dof.drive = None;
-    }
+    let model = mjcf::read(&path, MjcfOptions::default()).unwrap().model;
     match golden().get("reference") {
         Some(golden) => compare("reference", &model, &golden["facts"]),
         None => println!("the reference's humanoid is compared with golden files made anew alone"),
@@ -263,14 +350,33 @@ fn compare_dof(told: &str, model: &Model, index: usize, fact: &Value) {
         (joint.v..joint.v + joint.kind.nv()).contains(&index),
         "{told}"
     );
-    let drive = fact["drive"].as_array();
+    let spring = fact["spring"].as_array().map(|_| numbers(&fact["spring"]));
+    assert_eq!(dof.spring.is_some(), spring.is_some(), "{told}");
+    if let (Some(found), Some(wanted)) = (dof.spring, spring) {
+        close(told, &[found.stiffness, found.damping, found.rest], &wanted);
+    }
+    let drive = Some(&fact["drive"]).filter(|drive| drive.is_object());
     assert_eq!(dof.drive.is_some(), drive.is_some(), "{told}");
     if let (Some(found), Some(wanted)) = (dof.drive, drive) {
-        close(told, &[found.stiffness], &[number(&wanted[0])]);
-        close(told, &[found.damping], &[number(&wanted[1])]);
+        close(
+            told,
+            &[found.stiffness, found.damping],
+            &numbers(&wanted["gains"]),
+        );
+        close(told, &[found.torque], &[number(&wanted["torque"])]);
+        let limit = wanted["limit"].as_f64();
         assert_eq!(
             found.limit,
-            wanted[2].as_f64().map_or(f32::MAX, |limit| limit as f32)
+            limit.map_or(f32::MAX, |limit| limit as f32),
+            "{told}"
+        );
+        let control = wanted["control"]
+            .as_array()
+            .map(|_| numbers(&wanted["control"]));
+        close(
+            told,
+            &found.control,
+            &control.unwrap_or(vec![f32::MIN, f32::MAX]),
         );
     }
 }

@@ -13,7 +13,7 @@ use anyhow::Result;
 pub use config::{MAX_SPEED, SimulatorBatchConfig};
 pub use cpu::{CpuSimulatorBatch, SimulatedWorld};
 pub use gpu::{GpuSimulatorBatch, StepLaunch};
-pub use simulator_batch::{ContactCounters, SimulatorBatch};
+pub use simulator_batch::{ContactCounters, SimulatorBatch, overflow_warning};
 
 /// Opens a batch on a device.
 ///

@@ -10,7 +10,7 @@ pub struct ContactCounters {
     pub contacts: u64,
     /// Contacts of the step that had most.
     pub peak_contacts: u32,
-    /// Contacts that found no room.
+    /// Contacts that found no room; see [`overflow_warning`].
     pub overflow: u64,
     /// Worlds that diverged and were reset.
     pub diverged: u64,
@@ -54,6 +54,15 @@ pub trait SimulatorBatch {
     /// # Errors
     /// The device was lost.
     fn counters(&self) -> Result<ContactCounters>;
+}
+
+/// What to tell of contacts that found no room, if there were any.
+pub fn overflow_warning(overflow: u64) -> Option<String> {
+    (overflow > 0).then(|| {
+        format!(
+            "warning: {overflow} contacts found no room, and the shallowest of their steps were left out: bodies may sink into each other; `--device cpu` has room for all"
+        )
+    })
 }
 
 impl ContactCounters {

@@ -15,7 +15,7 @@ use crate::kernels::humanoid::end_episode::{self, LIMIT, end, fields, sums_at};
 use crate::kernels::physics::proprioception;
 use crate::kernels::physics::smooth_dynamics;
 use crate::kernels::physics::solve_and_integrate::{
-    read_warm_start, warm_start_dim, write_warm_start,
+    read_warm_start, warm_start_dim, warm_start_room, write_warm_start,
 };
 use crate::kernels::physics::strided::{gather, scatter};
 use crate::kernels::termination;
@@ -108,6 +108,14 @@ impl CpuHumanoidEnv {
         let state = &mut self.task_states[env];
         self.common.task.move_target(at, world, state);
         self.observe_all();
+    }
+
+    /// Contacts that a saved state has room for: a GPU's, or as many as a world has.
+    fn room(&self) -> usize {
+        let worlds = self.batch.worlds.iter();
+        let most = worlds.map(|world| world.state.contact_ids.len()).max();
+        most.unwrap_or(0)
+            .max(self.common.batch.options.max_contacts)
     }
 
     fn observe_all(&mut self) {
@@ -295,16 +303,20 @@ impl VecEnv for CpuHumanoidEnv {
         })))
     }
 
+    fn contact_overflow(&self) -> Result<u64> {
+        Ok(self.batch.counters()?.overflow)
+    }
+
     fn save(&self, to: &mut Section) -> Result<()> {
         let (envs, model) = (self.common.spec.envs, &self.common.batch.model);
-        let max_contacts = self.common.batch.options.max_contacts;
+        let room = self.room();
         let mut episodes = vec![0.0; fields(self.common.measures) * envs];
         let mut task_states = vec![0.0; self.common.task.state_dim() * envs];
-        let mut warm_start = vec![0; warm_start_dim(max_contacts, model.joints.len()) * envs];
+        let mut warm_start = vec![0; warm_start_dim(room, model.joints.len()) * envs];
         for (env, world) in self.batch.worlds.iter().enumerate() {
             scatter(&mut episodes, envs, env, 0, &self.episodes[env]);
             scatter(&mut task_states, envs, env, 0, &self.task_states[env]);
-            write_warm_start(&world.state, &mut warm_start, envs, env, max_contacts);
+            write_warm_start(&world.state, &mut warm_start, envs, env, room);
         }
         to.put("step_counter", self.common.step_counter);
         to.put_array("state", &self.batch.state()?);
@@ -316,18 +328,19 @@ impl VecEnv for CpuHumanoidEnv {
 
     fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
         let (envs, model) = (self.common.spec.envs, self.common.batch.model.clone());
-        let max_contacts = self.common.batch.options.max_contacts;
-        let warm_start_dim = warm_start_dim(max_contacts, model.joints.len());
+        let joints = model.joints.len();
+        let room = warm_start_room(from.array_len("warm_start") / envs, joints);
         let step_counter = from.get("step_counter")?;
         let state = from.take_finite("state", (model.nq() + model.nv()) * envs)?;
-        let warm_start: Vec<u32> = from.take_array("warm_start", warm_start_dim * envs)?;
+        let warm_start: Vec<u32> =
+            from.take_array("warm_start", warm_start_dim(room, joints) * envs)?;
         let episodes = from.take_finite("episodes", fields(self.common.measures) * envs)?;
         let task_states = self.common.task.state_dim() * envs;
         let task_states = from.take_finite("task_state", task_states)?;
         self.common.step_counter = step_counter;
         for (env, world) in self.batch.worlds.iter_mut().enumerate() {
             smooth_dynamics::read(&model, &state, envs, env, &mut world.state);
-            read_warm_start(&warm_start, envs, env, max_contacts, &mut world.state);
+            read_warm_start(&warm_start, envs, env, room, &mut world.state);
             gather(&episodes, envs, env, 0, &mut self.episodes[env]);
             gather(&task_states, envs, env, 0, &mut self.task_states[env]);
         }

@@ -4,7 +4,7 @@ use super::common::Common;
 use super::humanoid_task::{GpuHumanoidTask, StepContext, TaskBuffers};
 use crate::container::{Section, SectionError};
 use crate::env::body_view::{BodyBuffers, BodyView, BodyWorlds};
-use crate::env::humanoid::batch::GpuSimulatorBatch;
+use crate::env::humanoid::batch::{GpuSimulatorBatch, SimulatorBatch};
 use crate::env::live_view::LiveView;
 use crate::env::spec::EnvSpec;
 use crate::env::vec_env::{Transition, VecEnv};
@@ -12,6 +12,7 @@ use crate::gpu::{Array, Buffer, Gpu};
 use crate::kernels::humanoid::end_episode::{self, LIMIT, fields, sums_at};
 use crate::kernels::humanoid::{action_targets, draw_starts, episode_sums};
 use crate::kernels::physics::proprioception;
+use crate::kernels::physics::solve_and_integrate::{warm_start_dim, warm_start_room, with_room};
 use crate::kernels::termination;
 use anyhow::Result;
 
@@ -170,6 +171,10 @@ impl VecEnv for GpuHumanoidEnv {
         })))
     }
 
+    fn contact_overflow(&self) -> Result<u64> {
+        Ok(self.worlds.batch.counters()?.overflow)
+    }
+
     fn save(&self, to: &mut Section) -> Result<()> {
         let (worlds, gpu) = (&self.worlds, &self.worlds.gpu);
         to.put("step_counter", self.common.step_counter);
@@ -185,7 +190,15 @@ impl VecEnv for GpuHumanoidEnv {
         let (worlds, envs) = (&mut self.worlds, self.common.spec.envs);
         let step_counter = from.get("step_counter")?;
         let state = from.take_finite("state", worlds.batch.state.len())?;
-        let warm_start: Vec<u32> = from.take_array("warm_start", worlds.batch.warm_start.len())?;
+        let (model, own) = (
+            &self.common.batch.model,
+            self.common.batch.options.max_contacts,
+        );
+        let joints = model.joints.len();
+        let room = warm_start_room(from.array_len("warm_start") / envs, joints);
+        let warm_start: Vec<u32> =
+            from.take_array("warm_start", warm_start_dim(room, joints) * envs)?;
+        let warm_start = with_room(model, &warm_start, envs, [room, own]);
         let episodes = from.take_finite("episodes", self.episodes.len())?;
         let task_state = self.common.task.state_dim() * envs;
         let mut task_state = from.take_finite("task_state", task_state)?;
