@@ -2,6 +2,7 @@
 //! what is wrong with it.
 
 use super::error::{Fault, MjcfError, MjcfProblem, Result, problem};
+use crate::input_file;
 use roxmltree::{Document, Node};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -158,7 +159,7 @@ pub fn read_text(path: &Path) -> Result<String> {
         error,
     };
     let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(failed)?;
+    let file = input_file::open(path, u64::MAX).map_err(failed)?;
     // One more than allowed: enough to be refused.
     let mut file = file.take(MAX_BYTES + 1);
     file.read_to_end(&mut bytes).map_err(failed)?;
