@@ -497,7 +497,7 @@ def footwork(args):
         summary = json.loads(Path(folder, "summary.json").read_text())
     first, last = rows[0], rows[-1]
     speed = (last["steps"] - first["steps"]) / (last["wall_s"] - first["wall_s"])
-    return speed, summary["success"]
+    return speed, summary["survival"]
 
 
 def options():
