@@ -323,6 +323,7 @@ fn pipes_and_devices_are_no_files() {
         "train plane --config /dev/zero",
         "train imitate --data pipe.bvh --out new",
         "eval run --data /dev/zero",
+        "sim --model pipe.bvh",
     ] {
         let code = if words.contains("--config") { 2 } else { 1 };
         place.refused(words, code, &["no regular file"]);
