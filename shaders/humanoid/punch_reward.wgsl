@@ -90,8 +90,9 @@ fn far_reward(distance: f32, way: vec2f, velocity: vec2f, alignment: f32) -> f32
     if (params.far == 3u) {
         let off = length(velocity - params.speed * way) / params.speed;
         let turned = acos(clamp(alignment, -1.0, 1.0)) / PI;
-        let facing = select(0.55, 0.55 * (1.0 - turned), params.facing == 1u);
-        return 0.4 * max(1.0 - off, -0.3) + facing + 0.05 / (1.0 + distance);
+        let facing = select(1.0, 1.0 - turned, params.facing == 1u);
+        let speed = max(1.0 - off, -0.3);
+        return 0.75 * speed * facing * facing + 0.2 * facing + 0.05 / (1.0 + distance);
     }
     let across = velocity - along * way;
     let short = params.speed - along;

@@ -222,7 +222,7 @@ fn near_reward(world: &Bodies, hand: u32, toward: Vec2, target: Vec3, params: &P
 
 /// Reward for going to the target (the paper's equations 5 to 10), as printed, with a distance whose slope
 /// reaches further, or as a sum that has a slope everywhere: of the speed toward the target, or of the
-/// difference from the wanted velocity.
+/// difference from the wanted velocity, which counts as far as the body faces as wanted.
 pub fn far_reward(
     distance: f32,
     way: Vec2,
@@ -239,8 +239,10 @@ pub fn far_reward(
     if params.far == 3 {
         let short = (velocity - params.speed * way).length() / params.speed;
         let turned = alignment.clamp(-1.0, 1.0).acos() / PI;
-        let facing = if faces { 0.55 * (1.0 - turned) } else { 0.55 };
-        return 0.4 * (1.0 - short).max(-0.3) + facing + 0.05 / (1.0 + distance);
+        // Who does not turn to the wanted side earns little by moving.
+        let facing = if faces { 1.0 - turned } else { 1.0 };
+        let speed = (1.0 - short).max(-0.3);
+        return 0.75 * speed * facing * facing + 0.2 * facing + 0.05 / (1.0 + distance);
     }
     let across = velocity - along * way;
     let short = params.speed - along;

@@ -13,7 +13,7 @@ pub enum FarReward {
     Slow,
     /// A sum with a slope everywhere, of the speed toward the target.
     Additive,
-    /// A sum with a slope everywhere, of the difference from the wanted velocity.
+    /// A sum with a slope everywhere, of the difference from the wanted velocity, as far as facing is as wanted.
     Velocity,
 }
 
