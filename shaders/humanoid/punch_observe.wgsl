@@ -63,13 +63,11 @@ fn punch_observe(@builtin(global_invocation_id) id: vec3u) {
     if (env >= params.envs) { return; }
     if ((params.only >> termination[env] & 1u) == 0u) { return; }
     cursor = params.at + env * params.width;
-    let root = vec4f(pose(3u), pose(4u), pose(5u), pose(6u));
-    let forward = rotate(root, vec3f(1.0, 0.0, 0.0)).xy;
-    heading = select(vec2f(1.0, 0.0), forward / length(forward), length(forward) > 1e-6);
+    heading = heading_of(vec4f(pose(3u), pose(4u), pose(5u), pose(6u)));
     let b = 7u * params.target_body;
     let gap = vec2f(pose(b) - pose(0u), pose(b + 1u) - pose(1u));
     let distance = length(gap);
-    put2(select(vec2f(1.0, 0.0), gap / distance, distance > 1e-6));
+    put2(unit2(gap));
     put(0.2 * distance);
     put2(gap * min(1.0, 1.5 / max(distance, 1e-6)));
     put(pose(b + 2u));

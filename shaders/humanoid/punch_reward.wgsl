@@ -70,8 +70,6 @@ fn velocity_of(body: u32) -> vec3f {
     return velocity3(6u * body + 3u) + cross(velocity3(6u * body), position_of(body) - position_of(0u));
 }
 
-fn unit(v: vec2f) -> vec2f { return select(vec2f(1.0, 0.0), v / length(v), length(v) > 1e-6); }
-
 // Equations 2 to 4 for one hand.
 fn near_reward(hand: u32, toward: vec2f, target_position: vec3f) -> f32 {
     let apart = target_position - position_of(hand);
@@ -127,12 +125,11 @@ fn punch_reward(@builtin(global_invocation_id) id: vec3u) {
     let up = rotate(box_rotation, vec3f(0.0, 0.0, 1.0)).z;
     let gap = target_position.xy - position_of(0u).xy;
     let distance = length(gap);
-    let toward = unit(gap);
+    let toward = unit2(gap);
     let moving = vec2f(carried(MOVING), carried(MOVING + 1u));
     let way = select(toward, moving, params.joystick == 1u);
     let wanted = select(toward, vec2f(carried(FACING), carried(FACING + 1u)), params.joystick == 1u);
-    let forward = unit(rotate(rotation_of(0u), vec3f(1.0, 0.0, 0.0)).xy);
-    let alignment = dot(forward, wanted);
+    let alignment = dot(heading_of(rotation_of(0u)), wanted);
 
     if (carried(FIRST) == 0.0) {
         let first = toucher();

@@ -64,8 +64,7 @@ fn track_observe(@builtin(global_invocation_id) id: vec3u) {
     cursor = params.at + env * params.width;
     let next = min(task_state[ROW * params.envs + env] + 1.0, task_state[LAST * params.envs + env]);
     row = u32(next) * (params.nq + params.nv + 12u);
-    let forward = rotate(vec4f(pose(3u), pose(4u), pose(5u), pose(6u)), vec3f(1.0, 0.0, 0.0)).xy;
-    let heading = select(vec2f(1.0, 0.0), forward / length(forward), length(forward) > 1e-6);
+    let heading = heading_of(vec4f(pose(3u), pose(4u), pose(5u), pose(6u)));
     put3(heading, wanted3(0u) - vec3f(pose(0u), pose(1u), pose(2u)));
     put_rotation(heading, wanted_rotation(3u));
     let straight = vec2f(1.0, 0.0);

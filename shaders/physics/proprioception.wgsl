@@ -80,9 +80,7 @@ fn proprioception(@builtin(global_invocation_id) id: vec3u) {
     let root = model_table[tree + TREE_BODY];
     let position = position_of(root);
     let rotation = rotation_of(root);
-    let forward = rotate(rotation, vec3f(1.0, 0.0, 0.0)).xy;
-    // Upright is the rule: one who faces straight up or down has no heading, and gets the world's.
-    let heading = select(vec2f(1.0, 0.0), forward / length(forward), length(forward) > 1e-6);
+    let heading = heading_of(rotation);
     put(position.z);
     put_rotation(rotation, heading);
     let at = VELOCITIES_AT() + 6u * root;

@@ -9,6 +9,12 @@ fn quat_mul(a: vec4f, b: vec4f) -> vec4f {
     return vec4f(a.w * b.xyz + b.w * a.xyz + cross(a.xyz, b.xyz), a.w * b.w - dot(a.xyz, b.xyz));
 }
 
+fn unit2(v: vec2f) -> vec2f { return select(vec2f(1.0, 0.0), v / length(v), length(v) > 1e-6); }
+
+// Which way a root faces on the ground. Upright is the rule: one who faces straight up or down has no heading, and
+// gets the world's.
+fn heading_of(root: vec4f) -> vec2f { return unit2(rotate(root, vec3f(1.0, 0.0, 0.0)).xy); }
+
 // Quaternion of an axis times an angle, rad.
 fn from_rotation(v: vec3f) -> vec4f {
     let angle = length(v);

@@ -8,7 +8,7 @@ use std::fmt::{Display, Formatter};
 /// One thing found in one clip.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// The same for all clips of which it is true.
+    /// What was found, in words that are the same for all clips of which it is true.
     pub what: String,
     /// Figures of this clip; empty if there are none.
     pub detail: String,

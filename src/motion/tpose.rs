@@ -37,7 +37,7 @@ pub fn find(recording: &Recording, roles: &Roles) -> (usize, usize) {
     find_within(recording, roles, 0..recording.frames())
 }
 
-/// As [`find`], of some frames of a recording.
+/// Finds T-poses as [`find`] does, in some frames of a recording.
 pub fn find_within(recording: &Recording, roles: &Roles, within: Range<usize>) -> (usize, usize) {
     let Some(limbs) = Limbs::of(&recording.skeleton, roles) else {
         return (0, 0);

@@ -3,7 +3,7 @@
 //! one that resists acceleration like an armature of dt kd + dt^2 kp.
 
 use super::kinematics::quaternion;
-use super::model::{Drive, Joint, JointKind, Model, Spring};
+use super::model::{Drive, Joint, JointKind, JointSpring, Model};
 use glam::{Quat, Vec3};
 
 /// The force of a drive or spring, Nm, and its armature, kg m^2.
@@ -68,7 +68,7 @@ fn effort(drive: &Drive, control: f32, q: f32, v: f32, dt: f32) -> Effort {
 pub fn spring_efforts(model: &Model, q: &[f32], v: &[f32], dt: f32, efforts: &mut [Effort]) {
     for (index, dof) in model.dofs.iter().enumerate() {
         let Some(spring) = dof.spring else { continue };
-        let Spring {
+        let JointSpring {
             stiffness,
             damping,
             rest,

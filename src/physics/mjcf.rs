@@ -33,7 +33,7 @@ use grammar::{MUJOCO, TENDON, TENDONS};
 pub use options::MjcfOptions;
 use settings::MjcfSettings;
 pub use source::MAX_BYTES;
-use source::{Source, read_text, refuse_large, xml};
+use source::{MjcfSource, read_text, refuse_large, xml};
 use std::path::Path;
 use worldbody::WorldBuilder;
 
@@ -81,7 +81,7 @@ pub fn parse(text: &str, file: &Path) -> Result<Model> {
 
 fn compile(text: &str, file: &Path, options: MjcfOptions) -> Result<MjcfModel> {
     refuse_large(text.len(), file)?;
-    let source = Source::new(text, file)?;
+    let source = MjcfSource::new(text, file)?;
     let document = xml(&source.text, file)?;
     let root = Element::new(&source, document.root_element());
     if root.tag() != "mujoco" {

@@ -131,7 +131,7 @@ pub struct Dof {
     /// Inertia added to its own, kg m^2 (kg for translations).
     pub armature: f32,
     /// Its own spring and damper, if it has any.
-    pub spring: Option<Spring>,
+    pub spring: Option<JointSpring>,
     /// Its actuator, none if it is passive.
     pub drive: Option<Drive>,
     /// Inverse inertia that a force at it meets at the start (MuJoCo's `dof_invweight0`).
@@ -140,7 +140,7 @@ pub struct Dof {
 
 /// A passive spring and damper of one degree of freedom (MuJoCo's `jnt_stiffness` and `dof_damping`).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spring {
+pub struct JointSpring {
     /// Nm/rad
     pub stiffness: f32,
     /// Nm s/rad

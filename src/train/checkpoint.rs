@@ -42,6 +42,8 @@ pub struct Checkpoint {
     pub policy: Policy,
     /// All but `run`.
     pub sections: Sections,
+    /// Where it was read from; empty if it was taken just now.
+    pub path: PathBuf,
 }
 
 /// Why a checkpoint is of no use.
@@ -134,6 +136,7 @@ impl Checkpoint {
             header,
             policy,
             sections,
+            path: PathBuf::new(),
         })
     }
 
@@ -170,6 +173,7 @@ impl Checkpoint {
             header,
             policy,
             sections,
+            path: path.to_path_buf(),
         })
     }
 
@@ -241,7 +245,6 @@ impl Checkpoint {
     /// A section is missing or damaged.
     pub fn restore(
         mut self,
-        path: &Path,
         learner: &mut dyn Algorithm,
         envs: &mut EnvBatch,
     ) -> Result<TrainerState, CheckpointError> {
@@ -250,7 +253,7 @@ impl Checkpoint {
             envs.load(|name| self.sections.take(name))?;
             TrainerState::load(&mut self.sections.take("trainer")?)
         };
-        restore().map_err(|error| damaged(path, error))
+        restore().map_err(|error| damaged(&self.path, error))
     }
 }
 

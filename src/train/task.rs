@@ -117,8 +117,7 @@ pub trait Task: Send + Sync {
         envs: &EnvBatch,
         device: &Device,
     ) -> Result<Box<dyn Algorithm>> {
-        let learner = PpoLearner::new(&config.ppo, envs, device, config.seed)?;
-        Ok(Box::new(learner))
+        ppo_learner(config, envs, device)
     }
 
     /// Runs `episodes` fixed episodes to their end, the same ones for every policy.
@@ -157,6 +156,19 @@ pub trait Task: Send + Sync {
     fn body(&self) -> Option<BodyEpisodes> {
         None
     }
+}
+
+/// PPO on the environments' own rewards.
+///
+/// # Errors
+/// The networks do not fit the observations, or the device.
+pub fn ppo_learner(
+    config: &Config,
+    envs: &EnvBatch,
+    device: &Device,
+) -> Result<Box<dyn Algorithm>> {
+    let learner = PpoLearner::new(&config.ppo, envs, device, config.seed)?;
+    Ok(Box::new(learner))
 }
 
 /// Something was asked of a task that it does not have.

@@ -114,7 +114,7 @@ impl<'a> Loop<'a> {
         }
         if let Some(checkpoint) = from {
             steps = checkpoint.header.steps;
-            state = checkpoint.restore(&run.checkpoint("last"), &mut *learner, &mut envs)?;
+            state = checkpoint.restore(&mut *learner, &mut envs)?;
             let path = run.metrics_path();
             let known = metrics::read(&path, steps)?;
             for line in known.damaged {

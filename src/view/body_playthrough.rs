@@ -54,7 +54,7 @@ impl BodyContext {
 
 /// A force on a body that lasts a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Push {
+pub struct BodyPush {
     /// Number of the body.
     pub body: usize,
     /// At its centre of mass, N.
@@ -86,7 +86,7 @@ pub struct BodyPlaythrough {
     /// Forces at the end of the last step.
     pub touching: Vec<TouchForce>,
     /// Somebody's push in the last step.
-    pub push: Option<Push>,
+    pub push: Option<BodyPush>,
     /// The frame of [`BodyContext::reference`] that it is nearest to.
     pub reference: Option<usize>,
     /// Positions at which it should be, if the task says so.
@@ -131,7 +131,7 @@ impl BodyPlaythrough {
         &self,
         context: &mut BodyContext,
         policy: &BodyPolicy,
-        push: Option<Push>,
+        push: Option<BodyPush>,
     ) -> Result<BodyPlaythrough> {
         let env = context.env(self.episode);
         env.load(&mut self.state.clone())?;

@@ -1,6 +1,6 @@
 //! Scenes of a simulated body: the forces on it, and beside it what it is to move like.
 
-use super::body_playthrough::{BodyContext, BodyPlaythrough, Push, TouchForce};
+use super::body_playthrough::{BodyContext, BodyPlaythrough, BodyPush, TouchForce};
 use super::camera::Camera;
 use super::scene::{Colour, Scene};
 use super::shapes::{self, Look, seen};
@@ -28,7 +28,7 @@ pub struct BodyExtras {
 pub fn body_scene(
     moment: &BodyPlaythrough,
     context: &BodyContext,
-    push: Option<Push>,
+    push: Option<BodyPush>,
     extras: BodyExtras,
     camera: &Camera,
 ) -> Scene {

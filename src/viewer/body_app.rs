@@ -8,7 +8,7 @@ use crate::env::humanoid::task::DT;
 use crate::gpu::Gpu;
 use crate::train::body_policy::BodyPolicy;
 use crate::view::Camera;
-use crate::view::body_playthrough::{BodyContext, BodyPlaythrough, Push};
+use crate::view::body_playthrough::{BodyContext, BodyPlaythrough, BodyPush};
 use crate::view::body_scene::{ARROW, BodyExtras, body_scene};
 use crate::view::camera::{FOLLOW, Ray};
 use crate::view::shapes::{self, seen, simulated};
@@ -245,12 +245,12 @@ impl BodyViewer {
     }
 
     /// The push of the body that is held, towards the pointer: its arrow ends there.
-    fn push(&self) -> Option<Push> {
+    fn push(&self) -> Option<BodyPush> {
         let (body, ray) = self.grip?;
         let centre = self.centres()[body];
         let towards = ray.plane(centre, self.camera.focus - self.camera.eye())?;
         let force = simulated(towards - centre) / ARROW;
-        Some(Push {
+        Some(BodyPush {
             body,
             force: force.clamp_length_max(HARDEST),
         })

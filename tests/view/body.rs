@@ -16,7 +16,7 @@ use footwork::train::config::{Config, Preset};
 use footwork::train::state::TrainerState;
 use footwork::train::task::Task;
 use footwork::train::tasks::find;
-use footwork::view::body_playthrough::{BodyContext, BodyPlaythrough, Push};
+use footwork::view::body_playthrough::{BodyContext, BodyPlaythrough, BodyPush};
 use footwork::view::shapes::{self, Look, seen};
 use footwork::view::{BodyCrowd, Camera, Renderer, Scene};
 use footwork::viewer::BodyViewer;
@@ -152,7 +152,7 @@ fn a_push_goes_where_it_is_meant_to() {
     // The task's own pushes are on the torso.
     let torso = context.model().body("torso").unwrap();
     let mut pushed = |force: Vec3| {
-        let push = Some(Push { body: torso, force });
+        let push = Some(BodyPush { body: torso, force });
         let mut moment = first.clone();
         for _ in 0..6 {
             moment = moment.next(&mut context, &policy, push).unwrap();

@@ -24,9 +24,9 @@ pub struct ClipFigures {
     pub name: String,
     pub seconds: f32,
     pub candidates: usize,
-    /// Of the smoothed path on the ground, m/s.
+    /// Mean speed along the smoothed path on the ground, m/s.
     pub mean_speed: f32,
-    /// Between two frames of it, m/s.
+    /// Largest speed between two frames of it, m/s.
     pub max_speed: f32,
     /// Metres of one unit of its file; none if it comes from no file.
     pub unit_m: Option<f32>,

@@ -94,7 +94,7 @@ pub fn twin(
         gather(state, envs, env, 0, &mut positions);
         gather(state, envs, env, params.nq as usize, &mut speeds);
         gather(task_state, envs, env, 0, &mut carried);
-        let body = Body {
+        let body = TrackedBody {
             model,
             q: &positions,
             v: &speeds,
@@ -109,7 +109,7 @@ pub fn twin(
 }
 
 /// A body after a step.
-pub struct Body<'a> {
+pub struct TrackedBody<'a> {
     /// What it is of; its first tree is the body.
     pub model: &'a Model,
     /// `[nq]`
@@ -123,7 +123,7 @@ pub struct Body<'a> {
 /// Reward of a step and how it ends for the task (Peng et al., "DeepMimic", 2018, equations 5 to 9, with the root in
 /// place of the centre of mass).
 pub fn step(
-    body: &Body,
+    body: &TrackedBody,
     references: &[f32],
     state: &mut [f32],
     measures: &mut [f32],

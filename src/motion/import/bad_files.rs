@@ -48,7 +48,8 @@ impl BadFiles {
         }
     }
 
-    /// Of a single file, and of a roles file, the error itself: no other file is better.
+    /// One error for all of them: that of a single file, or of a roles file, itself, since no other file is
+    /// better.
     pub fn into_error(mut self, path: &Path, files: usize) -> MotionError {
         let is_sole =
             |error: &MotionError| files == 1 || matches!(error, MotionError::RolesFile { .. });

@@ -8,7 +8,7 @@ use super::element::Element;
 use super::error::Checked;
 use super::grammar::{ACTUATOR, GENERAL, Grammar, MOTOR, POSITION};
 use super::worldbody::WorldBuilder;
-use crate::physics::model::{Drive, Joint, JointKind, Spring};
+use crate::physics::model::{Drive, Joint, JointKind, JointSpring};
 
 /// An actuator before its gear: g, kp and kd.
 struct Affine {
@@ -127,7 +127,7 @@ impl<'a> WorldBuilder<'a> {
                 continue;
             }
             for dof in &mut self.model.dofs[joint.v..][..joint.kind.nv()] {
-                dof.spring = Some(Spring {
+                dof.spring = Some(JointSpring {
                     stiffness,
                     damping,
                     rest: read.rest,

@@ -2,7 +2,7 @@
 
 use super::error::{Checked, Fault};
 use super::grammar::Grammar;
-use super::source::Source;
+use super::source::MjcfSource;
 use roxmltree::{Attribute, Node, NodeId};
 
 /// Larger numbers are mistakes, and would overflow when squared.
@@ -10,7 +10,7 @@ const LARGEST: f64 = 1e9;
 
 #[derive(Clone)]
 pub struct Element<'a> {
-    source: &'a Source,
+    source: &'a MjcfSource,
     node: Node<'a, 'a>,
     /// Those of default classes, which speak where this one is silent; the outermost class first.
     defaults: Vec<Node<'a, 'a>>,
@@ -19,7 +19,7 @@ pub struct Element<'a> {
 }
 
 impl<'a> Element<'a> {
-    pub fn new(source: &'a Source, node: Node<'a, 'a>) -> Self {
+    pub fn new(source: &'a MjcfSource, node: Node<'a, 'a>) -> Self {
         Element {
             source,
             node,

@@ -17,7 +17,7 @@ const MOST_PROBLEMS: usize = 50;
 /// Files that may be included.
 const MOST_FILES: usize = 100;
 
-pub struct Source {
+pub struct MjcfSource {
     pub text: String,
     /// In the order of the text.
     parts: Vec<Part>,
@@ -31,15 +31,15 @@ pub struct Source {
 struct Part {
     start: usize,
     file: usize,
-    /// Of the file, where the piece begins.
+    /// Line of the file at which the piece begins.
     line: u32,
 }
 
-impl Source {
+impl MjcfSource {
     /// # Errors
     /// Text that is no XML, or an included file that cannot be read.
-    pub fn new(text: &str, file: &Path) -> Result<Source> {
-        let mut source = Source {
+    pub fn new(text: &str, file: &Path) -> Result<MjcfSource> {
+        let mut source = MjcfSource {
             text: String::new(),
             parts: Vec::new(),
             files: Vec::new(),

@@ -1,7 +1,8 @@
 //! Tells recorded motion from that of agents, and rewards agents for what it takes for recorded.
 
+use super::adaptive_steps::AdaptiveSteps;
 use super::loss::{SUMS, TellApart};
-use super::pace::Pace;
+
 use super::replay::Replay;
 use super::{Amp, DiscriminatorLoss};
 use crate::container::{Section, SectionError};
@@ -41,7 +42,7 @@ pub struct Discriminator {
     penalties: Array,
     /// Sum of the style rewards of the present rollouts.
     style: Array,
-    pace: Pace,
+    steps: AdaptiveSteps,
     updates: u64,
     seed: u32,
 }
@@ -79,7 +80,7 @@ impl Discriminator {
             sums: Array::zeroed(device, SUMS),
             penalties: Array::zeroed(device, 1),
             style: Array::zeroed(device, 1),
-            pace: Pace::new(config.steps),
+            steps: AdaptiveSteps::new(config.steps),
             updates: 0,
             seed,
             config: config.clone(),
@@ -170,7 +171,7 @@ impl Discriminator {
         }
         self.sums = Array::zeroed(&self.device, SUMS);
         self.penalties = Array::zeroed(&self.device, 1);
-        for step in 0..self.pace.steps() {
+        for step in 0..self.steps.count() {
             self.step(step);
         }
         if self.updates > 0 {
@@ -281,8 +282,8 @@ impl Discriminator {
         let of = |i: usize| f64::from(sums[i]);
         let recorded = of(1).max(1.0);
         let agents = of(4) / of(3).max(1.0);
-        let steps = self.pace.steps();
-        self.pace.update(agents, style);
+        let steps = self.steps.count();
+        self.steps.update(agents, style);
         Ok(vec![
             ("style_reward", style),
             ("discriminator_steps", steps as f64),
@@ -299,7 +300,7 @@ impl Discriminator {
     /// The device was lost.
     pub fn save(&self, to: &mut Section) -> Result<()> {
         to.put("discriminator.updates", self.updates);
-        self.pace.save(to);
+        self.steps.save(to);
         let parameters = self.parameters.read(&self.device)?;
         to.put_array("discriminator.parameters", &parameters);
         self.adam.save(to)?;
@@ -313,7 +314,7 @@ impl Discriminator {
     /// It is of another discriminator.
     pub fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
         self.updates = from.get("discriminator.updates")?;
-        self.pace.load(from)?;
+        self.steps.load(from)?;
         let parameters = from.take_finite("discriminator.parameters", self.parameters.len())?;
         self.parameters = Array::from_slice(&self.device, &parameters);
         self.adam.load(from)?;

@@ -4,11 +4,11 @@
 //! [`Amp`] holds what may be chosen, [`discriminator`] learns and rewards, [`learner`] is PPO with both; a
 //! [`frozen_discriminator`] is what is left when learning is over.
 
+mod adaptive_steps;
 pub mod discriminator;
 pub mod frozen_discriminator;
 pub mod learner;
 mod loss;
-mod pace;
 mod replay;
 
 pub use discriminator::Discriminator;

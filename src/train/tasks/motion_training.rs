@@ -10,11 +10,10 @@ use crate::nn::Policy;
 use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
 use crate::rl::Algorithm;
-use crate::rl::ppo::PpoLearner;
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
-use crate::train::task::{Loaded, Task};
+use crate::train::task::{Loaded, Task, ppo_learner};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
@@ -130,10 +129,7 @@ impl<T: MotionTask> Task for MotionTraining<T> {
     ) -> Result<Box<dyn Algorithm>> {
         match &config.amp {
             Some(amp) => motions::learner(config, amp, &self.library, envs, device),
-            None => {
-                let learner = PpoLearner::new(&config.ppo, envs, device, config.seed)?;
-                Ok(Box::new(learner))
-            }
+            None => ppo_learner(config, envs, device),
         }
     }
 

@@ -7,7 +7,7 @@ use super::presets::styled;
 use crate::env::EnvSpec;
 use crate::env::humanoid::task::play::MeanPolicy;
 use crate::env::humanoid::task::spec;
-use crate::env::humanoid::track::{Track, TrackReport, TrackTask, evaluate};
+use crate::env::humanoid::track::{TrackReport, TrackTask, Tracking, evaluate};
 use crate::kernels::humanoid::track_observe;
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
@@ -23,13 +23,13 @@ pub const ENTRY: TaskEntry = TaskEntry {
     preset,
     spec: check,
     takes_motions: true,
-    load: |config| load::<Track>(config, scenes::humanoid()),
+    load: |config| load::<Tracking>(config, scenes::humanoid()),
     ablations: &[],
 };
 
 fn preset(preset: Preset) -> TaskPreset {
     TaskPreset {
-        settings: table(&Track::default()),
+        settings: table(&Tracking::default()),
         ppo: styled(preset),
         amp: None,
         steps: 2_500_000,
@@ -37,13 +37,13 @@ fn preset(preset: Preset) -> TaskPreset {
 }
 
 fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
-    let track = Track::of(config)?;
+    let track = Tracking::of(config)?;
     track.check().map_err(ConfigError::Settings)?;
     let model = scenes::humanoid();
     Ok(spec(&model, track_observe::dim(&model), config.ppo.envs))
 }
 
-impl MotionTask for Track {
+impl MotionTask for Tracking {
     type Played = TrackTask;
     type Report = TrackReport;
 

@@ -8,7 +8,7 @@ use footwork::env::humanoid::imitate::ImitateTask;
 use footwork::env::humanoid::punch::{Punch, PunchTask};
 use footwork::env::humanoid::recorded::{demonstrations, observe};
 use footwork::env::humanoid::task::{CpuHumanoidEnv, EpisodeRules, HumanoidTask, open};
-use footwork::env::humanoid::track::{Track, TrackTask};
+use footwork::env::humanoid::track::{TrackTask, Tracking};
 use footwork::env::{Transition, VecEnv, termination};
 use footwork::gpu::{Array, Device};
 use footwork::motion::synthetic::{perform_boxing, perform_walk};
@@ -39,9 +39,9 @@ fn tasks(episode_s: f32) -> [Arc<dyn HumanoidTask>; 4] {
         after_hit_s: 0.2,
         ..Punch::default()
     };
-    let track = Track {
+    let track = Tracking {
         rules: rules(episode_s),
-        ..Track::default()
+        ..Tracking::default()
     };
     [
         Arc::new(ImitateTask::new(&rules(episode_s), &LIBRARY, 3)),

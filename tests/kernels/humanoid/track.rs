@@ -5,7 +5,7 @@ use crate::inputs::{Draw, POISON, close};
 use crate::physics::worlds::{Worlds, random_state};
 use footwork::env::humanoid::task::KEY_BODIES;
 use footwork::kernels::humanoid::draw_starts::start_of;
-use footwork::kernels::humanoid::track_reward::{Body, KEYS, step};
+use footwork::kernels::humanoid::track_reward::{KEYS, TrackedBody, step};
 use footwork::kernels::humanoid::track_state::{LAST, ROW, TRACK_STATE};
 use footwork::kernels::humanoid::{begin_track, track_observe, track_reward};
 use footwork::kernels::termination::{FAILED, RUNNING, TRUNCATED};
@@ -178,7 +178,7 @@ fn rewards_by_terms() {
     let of = |q: &[f32], v: &[f32], poses: &[Pose]| {
         let mut state = [0.0, 2.0];
         let mut measures = [0.0; 2];
-        let body = Body {
+        let body = TrackedBody {
             model: &model,
             q,
             v,

@@ -1,6 +1,6 @@
 //! The task `track`: follow recordings moment by moment, as DeepMimic does (Peng et al. 2018).
 //!
-//! [`Track`] are its choices, [`TrackTask`] plays it, and [`evaluate`] judges a policy.
+//! [`Tracking`] are its choices, [`TrackTask`] plays it, and [`evaluate`] judges a policy.
 
 mod references;
 
@@ -13,7 +13,7 @@ use super::task::{
     StepOutcome, TaskBuffers, check_range,
 };
 use crate::gpu::{Buffer, Gpu};
-use crate::kernels::humanoid::track_reward::{Body, KEYS};
+use crate::kernels::humanoid::track_reward::{KEYS, TrackedBody};
 use crate::kernels::humanoid::track_state::{ROW, TRACK_STATE};
 use crate::kernels::humanoid::{begin_track, track_observe, track_reward};
 use crate::physics::model::Model;
@@ -26,7 +26,7 @@ use std::sync::Arc;
 /// Choices of the task `track`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Track {
+pub struct Tracking {
     /// Length and failures of an episode.
     #[serde(flatten)]
     pub rules: EpisodeRules,
@@ -34,16 +34,16 @@ pub struct Track {
     pub max_distance: f32,
 }
 
-impl Default for Track {
+impl Default for Tracking {
     fn default() -> Self {
-        Track {
+        Tracking {
             rules: EpisodeRules::default(),
             max_distance: 1.0,
         }
     }
 }
 
-impl Track {
+impl Tracking {
     /// Whether the choices can be played.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ struct Params {
 
 impl TrackTask {
     /// The task, with starts that depend on `seed`.
-    pub fn new(track: &Track, library: &Arc<MotionLibrary>, seed: u32) -> TrackTask {
+    pub fn new(track: &Tracking, library: &Arc<MotionLibrary>, seed: u32) -> TrackTask {
         let steps = track.rules.steps() as usize;
         let references = References::new(library, steps, seed);
         TrackTask {
@@ -96,7 +96,7 @@ impl TrackTask {
     }
 }
 
-fn params(track: &Track, model: &Model, starts: usize) -> Params {
+fn params(track: &Tracking, model: &Model, starts: usize) -> Params {
     let keys = KEY_BODIES.map(|name| model.body(name).expect("a body of the humanoid") as u32);
     let (nq, nv) = (model.nq() as u32, model.nv() as u32);
     Params {
@@ -185,7 +185,7 @@ impl HumanoidTask for TrackTask {
         state: &mut [f32],
         measures: &mut [f32],
     ) -> StepOutcome {
-        let body = Body {
+        let body = TrackedBody {
             model: &simulator.model,
             q: &world.state.q,
             v: &world.state.v,

@@ -23,7 +23,7 @@ pub struct References {
     pub rows: Vec<f32>,
     /// `[n][nq + nv]`
     pub start_states: Vec<f32>,
-    /// Of each start its row, and the last row of its motion, `[n][2]`.
+    /// The row of each start, and the last row of its motion, `[n][2]`.
     pub start_rows: Vec<u32>,
 }
 

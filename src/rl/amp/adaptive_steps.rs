@@ -12,17 +12,17 @@ const DWINDLED: f64 = 0.8;
 const UNCERTAIN: f64 = 0.9;
 
 /// The steps of an update, and what decides on them.
-pub struct Pace {
+pub struct AdaptiveSteps {
     most: usize,
     steps: usize,
     /// Style rewards of the latest updates in which the discriminator was certain.
     style: Vec<f64>,
 }
 
-impl Pace {
+impl AdaptiveSteps {
     /// As many steps as the configuration says.
-    pub fn new(most: usize) -> Pace {
-        Pace {
+    pub fn new(most: usize) -> AdaptiveSteps {
+        AdaptiveSteps {
             most,
             steps: most,
             style: Vec::new(),
@@ -30,7 +30,7 @@ impl Pace {
     }
 
     /// Steps of the present update.
-    pub fn steps(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.steps
     }
 
@@ -55,8 +55,8 @@ impl Pace {
 
     /// Saves all of it.
     pub fn save(&self, to: &mut Section) {
-        to.put("discriminator.pace", [self.steps, self.style.len()]);
-        to.put_array("discriminator.pace", &self.style);
+        to.put("discriminator.steps", [self.steps, self.style.len()]);
+        to.put_array("discriminator.steps", &self.style);
     }
 
     /// Puts a saved state back.
@@ -64,10 +64,12 @@ impl Pace {
     /// # Errors
     /// It is none.
     pub fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
-        let [steps, count]: [usize; 2] = from.get("discriminator.pace")?;
-        self.style = from.take_array("discriminator.pace", count)?;
+        let [steps, count]: [usize; 2] = from.get("discriminator.steps")?;
+        self.style = from.take_array("discriminator.steps", count)?;
         if steps == 0 || count > PATIENCE || self.style.iter().any(|style| !style.is_finite()) {
-            return Err(SectionError("the pace of its discriminator is none".into()));
+            return Err(SectionError(
+                "the steps of its discriminator are none".into(),
+            ));
         }
         self.steps = steps.min(self.most);
         Ok(())
@@ -80,15 +82,15 @@ mod tests {
 
     #[test]
     fn steps_are_halved_when_agents_lose_what_they_had() {
-        let mut pace = Pace::new(8);
-        (0..30).for_each(|_| pace.update(0.99, 0.5));
-        assert_eq!(pace.steps(), 8, "a reward that holds");
-        (0..30).for_each(|update| pace.update(0.99, 0.5 * 0.9f64.powi(update)));
-        assert!(pace.steps() < 8, "a reward that dwindles");
-        let few = pace.steps();
-        pace.update(0.95, 0.1);
-        assert_eq!(pace.steps(), few);
-        (0..3).for_each(|_| pace.update(0.8, 0.1));
-        assert_eq!(pace.steps(), 8, "a discriminator that is uncertain");
+        let mut steps = AdaptiveSteps::new(8);
+        (0..30).for_each(|_| steps.update(0.99, 0.5));
+        assert_eq!(steps.count(), 8, "a reward that holds");
+        (0..30).for_each(|update| steps.update(0.99, 0.5 * 0.9f64.powi(update)));
+        assert!(steps.count() < 8, "a reward that dwindles");
+        let few = steps.count();
+        steps.update(0.95, 0.1);
+        assert_eq!(steps.count(), few);
+        (0..3).for_each(|_| steps.update(0.8, 0.1));
+        assert_eq!(steps.count(), 8, "a discriminator that is uncertain");
     }
 }
