@@ -228,6 +228,11 @@ impl Section {
         section
     }
 
+    /// Whether there is nothing in it.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty() && self.arrays.0.is_empty()
+    }
+
     /// [`Section::take_array`] of floats that must be finite.
     ///
     /// # Errors

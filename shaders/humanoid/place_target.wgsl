@@ -24,6 +24,7 @@ struct Params {
     least: f32,          // m, of the others
     most: f32,
     height: f32,         // m, of the target's centre
+    facing_power: f32,   // 1 if the wanted facing is any, more if it is the more often near the way
 }
 
 @group(0) @binding(0) var<storage, read_write> mask: array<u32>;
@@ -63,7 +64,8 @@ fn place_target(@builtin(global_invocation_id) id: vec3u) {
     let distance = mix(range.x, range.y, uniform01(bits.z));
     let way = vec2f(cos(bearing), sin(bearing));
     let yaw = 2.0 * PI * uniform01(bits.w);
-    let facing = 2.0 * PI * uniform01(more.x);
+    let turn = 2.0 * uniform01(more.x) - 1.0;
+    let facing = bearing + PI * sign(turn) * pow(abs(turn), params.facing_power);
     let q = params.target_q;
     assign(q, start(0u) + distance * way.x);
     assign(q + 1u, start(1u) + distance * way.y);

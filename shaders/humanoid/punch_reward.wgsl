@@ -33,6 +33,7 @@ struct Params {
     steps_after: u32,     // that the episode goes on after a hit
     speed: f32,           // wanted, m/s
     near: f32,            // m; nearer than this is near
+    far_weight: f32,      // of the reward for a target that is farther
     hand_speed: f32,      // m/s toward the target, at which a hand's reward is largest
     fist_speed: f32,      // m/s; a slower fist is none
 }
@@ -152,7 +153,7 @@ fn punch_reward(@builtin(global_invocation_id) id: vec3u) {
     let hands = max(near_reward(params.right_hand, toward, target_position),
         near_reward(params.left_hand, toward, target_position));
     let far = far_reward(distance, way, velocity3(3u).xy, alignment);
-    reward[params.at + env] = select(select(0.3 * far, 0.3 + 0.3 * hands, near), 1.4, hit);
+    reward[params.at + env] = select(select(params.far_weight * far, 0.3 + 0.3 * hands, near), 1.4, hit);
     kind[params.at + env] = select(select(0u, 1u, near), 2u, hit);
     let counts = !hit && !near;
     measures[env] = select(0.0, 1.0, toppled && before == 0.0);

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 const FORMAT: Format = Format {
     kind: "checkpt",
-    version: 6,
+    version: 7,
 };
 
 /// The run that a checkpoint is of, and how far it had come.

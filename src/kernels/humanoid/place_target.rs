@@ -39,6 +39,8 @@ crate::shader_params! {
         pub most: f32,
         /// Height of the target's centre, m.
         pub height: f32,
+        /// 1 if the wanted facing is any, more if it is the more often near the way.
+        pub facing_power: f32,
     }
 }
 
@@ -91,7 +93,9 @@ pub fn place(env: usize, start: &mut [f32], state: &mut [f32], params: &Params) 
     start[q..q + 7].copy_from_slice(&[x, y, params.height, half_cos, 0.0, 0.0, half_sin]);
     start[(params.nq + params.target_v) as usize..][..6].fill(0.0);
     state.fill(0.0);
-    let (facing_sin, facing_cos) = (2.0 * PI * uniform01(facing)).sin_cos();
+    let turn = 2.0 * uniform01(facing) - 1.0;
+    let turn = PI * turn.signum() * turn.abs().powf(params.facing_power);
+    let (facing_sin, facing_cos) = (bearing + turn).sin_cos();
     state[FACING..FACING + 2].copy_from_slice(&[facing_cos, facing_sin]);
     state[MOVING..MOVING + 2].copy_from_slice(&[cos, sin]);
 }

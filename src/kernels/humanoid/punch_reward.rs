@@ -43,6 +43,8 @@ crate::shader_params! {
         pub speed: f32,
         /// Distance below which the target is near, m.
         pub near: f32,
+        /// Weight of the reward for a target that is farther.
+        pub far_weight: f32,
         /// Speed of a hand toward the target at which its reward is largest, m/s.
         pub hand_speed: f32,
         /// Speed below which a hand is no fist, m/s.
@@ -183,7 +185,7 @@ pub fn step(
         0.3 + 0.3 * hands[0].max(hands[1])
     } else {
         let velocity = world.velocities[0].linear.truncate();
-        0.3 * far_reward(distance, way, velocity, alignment, params)
+        params.far_weight * far_reward(distance, way, velocity, alignment, params)
     };
     let is = |fact: bool| f32::from(u8::from(fact));
     let new = toppled && before == 0.0;

@@ -78,8 +78,12 @@ impl Algorithm for AmpLearner {
 
     fn start_from(&mut self, policy: &Policy, section: &mut Section) -> Result<(), SectionError> {
         self.ppo.start_from(policy, section)?;
-        self.discriminator
-            .load(&mut section.take_section("discriminator"))
+        let mut own = section.take_section("discriminator");
+        // What learned without a discriminator goes on with a new one.
+        match own.is_empty() {
+            true => Ok(()),
+            false => self.discriminator.load(&mut own),
+        }
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {

@@ -9,7 +9,7 @@ use crate::gpu::{Array, Device};
 use crate::kernels::learn::rollout_moments::scale;
 use crate::kernels::learn::{adapt_lr, sample_action};
 use crate::kernels::rng::permutation;
-use crate::nn::{ActorCritic, Adam, Engine, Network, Policy, RunningMeanStd};
+use crate::nn::{ActorCritic, Adam, Engine, Network, Policy, RunningMeanStd, rows};
 use crate::rl::gae::{Bootstrap, RewardSource, gae};
 use crate::rl::rollout::Rollout;
 use crate::rl::sample_action::sample_action;
@@ -29,6 +29,9 @@ const LR_RANGE: [f64; 2] = [1e-5, 1e-2];
 
 /// Range of a learning rate that is adapted before each minibatch.
 const MINIBATCH_LR_RANGE: [f64; 2] = [2e-5, 3e-3];
+/// Updates in which only the critic learns, of a policy that comes from another training: the first
+/// advantages would be noise, which drives it away from what it knows.
+const CRITIC_ALONE: u64 = 20;
 /// Index of the KL divergence in the objective's sums.
 const KL: usize = 3;
 
@@ -55,6 +58,8 @@ pub struct PpoLearner {
     /// Weight of the KL penalty, if there is one.
     kl_coefficient: f64,
     updates: u64,
+    /// The first update in which the actor learns.
+    actor_from: u64,
     seed: u32,
 }
 
@@ -122,6 +127,7 @@ impl PpoLearner {
             learning_rate: config.learning_rate,
             kl_coefficient: config.kl_coefficient,
             updates: 0,
+            actor_from: 0,
             seed,
             config: config.clone(),
             device: device.clone(),
@@ -336,7 +342,9 @@ impl PpoLearner {
             &mut self.gradient,
             &mut self.sums,
         );
-        if self.config.adapt_each_minibatch {
+        if self.updates < self.actor_from {
+            self.keep_actor();
+        } else if self.config.adapt_each_minibatch {
             let rate = |rate: f64| (rate / self.learning_rate) as f32;
             let params = adapt_lr::Params {
                 kl_at: KL as u32,
@@ -356,8 +364,19 @@ impl PpoLearner {
         );
     }
 
-    /// Adapts learning rate and KL penalty to the KL divergence of the last update.
+    /// Takes from the gradient what would change the actor.
+    fn keep_actor(&mut self) {
+        for range in [self.networks.actor.span(), self.networks.log_std()] {
+            let none = Array::zeroed(&self.device, range.len());
+            rows::replace(&self.device, &mut self.gradient, range.start, &none);
+        }
+    }
+
+    /// Adapts learning rate and KL penalty to the KL divergence of the last update, if it moved the actor.
     fn adapt(&mut self, kl: f64, steps: u64) {
+        if self.updates <= self.actor_from {
+            return;
+        }
         let config = &self.config;
         if config.desired_kl > 0.0 && !config.adapt_each_minibatch {
             let lr = self.learning_rate;
@@ -524,18 +543,19 @@ impl Algorithm for PpoLearner {
         if let (Some(own), Some(other)) = (&mut self.observation_normalizer, &policy.normalizer) {
             *own = other.widened(own.dim()).on(&self.device);
         }
+        self.actor_from = CRITIC_ALONE;
         Ok(())
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {
-        to.put("updates", self.updates);
+        to.put("updates", [self.updates, self.actor_from]);
         to.put_array("rates", &[self.learning_rate, self.kl_coefficient]);
         self.adam.save(to)?;
         self.value_normalizer.save(to)
     }
 
     fn load(&mut self, from: &mut Section, policy: &Policy) -> Result<(), SectionError> {
-        self.updates = from.get("updates")?;
+        [self.updates, self.actor_from] = from.get("updates")?;
         let rates: Vec<f64> = from.take_array("rates", 2)?;
         if !rates.iter().all(|rate| rate.is_finite()) {
             return Err(SectionError("its rates are not finite".to_string()));

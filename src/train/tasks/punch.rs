@@ -38,8 +38,11 @@ pub const JOYSTICK: TaskEntry = TaskEntry {
     preset: |chosen| {
         let punch = Punch {
             far: FarReward::Velocity,
-            // It is the way that is to be learned.
+            // It is the way that is to be learned: no reward for an early hit makes up for a wrong one.
             near_share: 0.2,
+            far_weight: 1.0,
+            // Walking as one faces comes first; other facings are learned from there.
+            facing_power: 3.0,
             ..Punch::default()
         };
         preset(chosen, punch)

@@ -30,6 +30,7 @@ fn params(envs: usize) -> punch_reward::Params {
         steps_after: 60,
         speed: 1.2,
         near: 1.2,
+        far_weight: 0.3,
         hand_speed: 1.0,
         fist_speed: 3.0,
     }
@@ -114,6 +115,7 @@ fn targets_agree_and_stand_where_they_should() {
             least: 5.0,
             most: 10.0,
             height: 0.9,
+            facing_power: 3.0,
         };
         let mut draw = Draw::new(2);
         let mut starts = draw.normals(26 * envs);

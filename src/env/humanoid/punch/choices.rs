@@ -44,6 +44,10 @@ pub struct Punch {
     pub distance: [f32; 2],
     /// How the way to a far target is rewarded.
     pub far: FarReward,
+    /// Weight of the reward for a far target.
+    pub far_weight: f32,
+    /// 1 if the wanted facing of `joystick` is any; more if it is the more often near the way.
+    pub facing_power: f32,
     /// Whether facing is rewarded.
     pub facing: bool,
     /// Wanted speed on the way, m/s; additive rewards want to be quick.
@@ -72,6 +76,8 @@ impl Default for Punch {
             near_bearing: 1.0,
             distance: [1.2, 10.0],
             far: FarReward::Additive,
+            far_weight: 0.3,
+            facing_power: 1.0,
             facing: true,
             speed: 1.2,
             near: 1.2,
@@ -90,6 +96,7 @@ impl Punch {
         Punch {
             near_share: 0.0,
             distance: [5.0, 10.0],
+            facing_power: 1.0,
             hit: Hit::Tilt,
             ..self
         }
@@ -117,6 +124,8 @@ impl Punch {
             ("near", self.near),
             ("fist_speed", self.fist_speed),
             ("after_hit_s", self.after_hit_s),
+            ("far_weight", self.far_weight),
+            ("facing_power", self.facing_power),
         ])?;
         for (name, speed) in [("speed", self.speed), ("hand_speed", self.hand_speed)] {
             if speed < 0.01 {

@@ -116,6 +116,7 @@ fn params(punch: &Punch, joystick: bool, model: &Model) -> Params {
             most: punch.distance[1],
             // Half its height, and a little more: on the ground, rounding would decide whether it touches.
             height: model.qpos0[target.q + 2] + 1e-3,
+            facing_power: punch.facing_power,
         },
         reward: punch_reward::Params {
             envs: 0,
@@ -132,6 +133,7 @@ fn params(punch: &Punch, joystick: bool, model: &Model) -> Params {
             steps_after: punch.steps_after_hit(),
             speed: punch.speed,
             near: punch.near,
+            far_weight: punch.far_weight,
             hand_speed: punch.hand_speed,
             fist_speed: punch.fist_speed,
         },
