@@ -28,7 +28,9 @@ impl BodyPolicy {
             None => None,
             Some(amp) => {
                 let mut learner = checkpoint.sections.take("learner")?;
-                let loaded = FrozenDiscriminator::load(amp, &mut learner, style);
+                let latents = config.ase.as_ref().map(|ase| ase.rewards().latents);
+                let latents = latents.unwrap_or_default();
+                let loaded = FrozenDiscriminator::load(amp, latents, &mut learner, style);
                 Some(loaded.context("the checkpoint's discriminator cannot be read")?)
             }
         };
@@ -52,7 +54,7 @@ impl BodyPolicy {
         play_episodes(envs, &mean, |envs, running| {
             for env in (0..count).filter(|&env| running[env]) {
                 let now = moment(envs, env);
-                sum += f64::from(discriminator.reward([&before[env], &now]));
+                sum += f64::from(discriminator.reward([&before[env], &now], &[]));
                 steps += 1;
                 before[env] = now;
             }

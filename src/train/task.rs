@@ -63,7 +63,10 @@ impl TaskEntry {
         let spec = (self.spec)(config)?;
         ActorCritic::new(&config.ppo.network, &spec.observation, spec.action, 1)?;
         if let Some(amp) = &config.amp {
-            network(amp, 2 * spec.style).map_err(ConfigError::Discriminator)?;
+            let latents = config.ase.as_ref().map(|ase| ase.rewards().latents);
+            let latents = latents.unwrap_or_default();
+            network(amp, 2 * spec.style + latents.shown(), latents)
+                .map_err(ConfigError::Discriminator)?;
         }
         if !self.takes_motions && config.reads_for_bodies() {
             return Err(ConfigError::Settings(format!(

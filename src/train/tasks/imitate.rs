@@ -31,6 +31,7 @@ fn preset(preset: Preset) -> TaskPreset {
         settings: table(&EpisodeRules::default()),
         ppo: styled(preset),
         amp: Some(discriminator(preset)),
+        ase: None,
         steps: 2_500_000,
     }
 }

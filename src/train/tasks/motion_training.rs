@@ -10,6 +10,8 @@ use crate::nn::Policy;
 use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
 use crate::rl::Algorithm;
+use crate::rl::amp::SkillRewards;
+use crate::rl::ase::{LatentDraw, LatentEnv, LatentWalk};
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
@@ -18,6 +20,7 @@ use crate::train::task::{Loaded, Task, ppo_learner};
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 use serde::Serialize;
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// What a task of a simulated body with recordings decides for itself. Its value holds the choices.
@@ -45,6 +48,16 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
     /// The task in an evaluation.
     fn judged(&self, library: &Arc<MotionLibrary>, seed: u32) -> Arc<Self::Played> {
         self.played(library, seed)
+    }
+
+    /// The latents under which agents move, if there are any.
+    fn latents(&self, _library: &MotionLibrary) -> Option<LatentDraw> {
+        None
+    }
+
+    /// What makes them move differently under different latents.
+    fn skill_rewards(&self) -> SkillRewards {
+        SkillRewards::default()
     }
 
     /// Plays `episodes` episodes, whose starts depend on `seed` alone.
@@ -88,8 +101,18 @@ pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
 
 impl<T: MotionTask> MotionTraining<T> {
     fn rate(&self, policy: &Policy, episodes: usize) -> T::Report {
-        let mean = |observation: &[f32]| policy.mean(observation);
         let task = self.task.judged(&self.library, EPISODES_SEED);
+        let walk = self.task.latents(&self.library);
+        let walk = walk.map(|draw| RefCell::new(LatentWalk::new(&draw, episodes, EPISODES_SEED)));
+        let mean = |observation: &[f32]| match &walk {
+            None => policy.mean(observation),
+            Some(walk) => {
+                let mut walk = walk.borrow_mut();
+                let action = policy.mean(&walk.observed(observation));
+                walk.advance();
+                action
+            }
+        };
         T::evaluate(task, &self.library, &mean, episodes, EPISODES_SEED)
     }
 }
@@ -116,8 +139,14 @@ impl<T: MotionTask> Task for MotionTraining<T> {
 
     fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
         let task = self.task.played(&self.library, seed);
+        let latents = self.task.latents(&self.library);
         EnvBatch::open(device, envs, None, |part| {
-            open(device, task.clone(), part, seed)
+            let first = part.start;
+            let envs = open(device, task.clone(), part, seed)?;
+            Ok(match &latents {
+                None => envs,
+                Some(draw) => Box::new(LatentEnv::new(envs, draw, device, first, seed)),
+            })
         })
     }
 
@@ -128,7 +157,14 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         device: &Device,
     ) -> Result<Box<dyn Algorithm>> {
         match &config.amp {
-            Some(amp) => motions::learner(config, amp, &self.library, envs, device),
+            Some(amp) => {
+                let (skills, latents) = (
+                    self.task.skill_rewards(),
+                    self.task.latents(&self.library),
+                );
+                let latents = latents.as_ref();
+                motions::learner(config, amp, &skills, latents, &self.library, envs, device)
+            }
             None => ppo_learner(config, envs, device),
         }
     }

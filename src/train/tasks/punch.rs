@@ -101,6 +101,7 @@ fn preset(chosen: Preset, punch: Punch) -> TaskPreset {
             task_weight: 0.5,
             ..discriminator(chosen)
         }),
+        ase: None,
         steps: 10_000_000,
     }
 }

@@ -57,6 +57,7 @@ fn preset(_: Preset) -> TaskPreset {
             ..fast()
         },
         amp: None,
+        ase: None,
         steps: 2_300_000,
     }
 }

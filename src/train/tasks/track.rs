@@ -32,6 +32,7 @@ fn preset(preset: Preset) -> TaskPreset {
         settings: table(&Tracking::default()),
         ppo: styled(preset),
         amp: None,
+        ase: None,
         steps: 2_500_000,
     }
 }
