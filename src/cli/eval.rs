@@ -87,6 +87,6 @@ impl Eval {
             return Ok(None);
         };
         let mut envs = episodes.open_all(self.episodes.min(STYLE_EPISODES));
-        Ok(BodyPolicy::new(checkpoint, &run.config)?.mean_style(&mut envs))
+        Ok(BodyPolicy::new(checkpoint, &run.config, &*run.task)?.mean_style(&mut envs))
     }
 }

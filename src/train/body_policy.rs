@@ -2,27 +2,28 @@
 
 use super::checkpoint::Checkpoint;
 use super::config::Config;
+use super::task::Task;
+use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::recorded::observe;
 use crate::env::humanoid::task::CpuHumanoidEnv;
 use crate::env::humanoid::task::play::play_episodes;
-use crate::nn::Policy;
 use crate::rl::amp::FrozenDiscriminator;
 use anyhow::{Context, Result};
 
-/// A checkpoint's policy, with its discriminator if the run has one.
+/// What a checkpoint's policy drives, with its discriminator if the run has one.
 pub struct BodyPolicy {
-    /// The policy.
-    pub policy: Policy,
+    /// Who acts.
+    pub driver: Box<dyn BodyDriver>,
     /// The discriminator.
     pub discriminator: Option<FrozenDiscriminator>,
 }
 
 impl BodyPolicy {
-    /// Those of a checkpoint of a run with this configuration.
+    /// Those of a checkpoint of a run of `task` with this configuration.
     ///
     /// # Errors
     /// The checkpoint is not of such a run.
-    pub fn new(mut checkpoint: Checkpoint, config: &Config) -> Result<BodyPolicy> {
+    pub fn new(mut checkpoint: Checkpoint, config: &Config, task: &dyn Task) -> Result<BodyPolicy> {
         let style = checkpoint.header.spec.style;
         let discriminator = match &config.amp {
             None => None,
@@ -33,7 +34,7 @@ impl BodyPolicy {
             }
         };
         Ok(BodyPolicy {
-            policy: checkpoint.policy,
+            driver: task.driver(&checkpoint.policy),
             discriminator,
         })
     }
@@ -48,8 +49,7 @@ impl BodyPolicy {
         let count = envs.batch.worlds.len();
         let mut before: Vec<Vec<f32>> = (0..count).map(|env| moment(envs, env)).collect();
         let (mut sum, mut steps) = (0.0, 0usize);
-        let mean = |observation: &[f32]| self.policy.mean(observation);
-        play_episodes(envs, &mean, |envs, running| {
+        play_episodes(envs, &*self.driver, |envs, running| {
             for env in (0..count).filter(|&env| running[env]) {
                 let now = moment(envs, env);
                 sum += f64::from(discriminator.reward([&before[env], &now]));

@@ -3,7 +3,7 @@
 
 use super::motions;
 use crate::env::EnvBatch;
-use crate::env::humanoid::task::play::MeanPolicy;
+use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::task::{HumanoidTask, open};
 use crate::gpu::Device;
 use crate::nn::Policy;
@@ -51,7 +51,7 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
     fn evaluate(
         task: Arc<Self::Played>,
         library: &MotionLibrary,
-        policy: &MeanPolicy,
+        driver: &dyn BodyDriver,
         episodes: usize,
         seed: u32,
     ) -> Self::Report;
@@ -88,9 +88,9 @@ pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
 
 impl<T: MotionTask> MotionTraining<T> {
     fn rate(&self, policy: &Policy, episodes: usize) -> T::Report {
-        let mean = |observation: &[f32]| policy.mean(observation);
         let task = self.task.judged(&self.library, EPISODES_SEED);
-        T::evaluate(task, &self.library, &mean, episodes, EPISODES_SEED)
+        let driver = self.driver(policy);
+        T::evaluate(task, &self.library, &*driver, episodes, EPISODES_SEED)
     }
 }
 
