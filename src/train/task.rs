@@ -12,6 +12,7 @@ use super::locomotion::Locomotion;
 use super::metrics::UpdateMetrics;
 #[cfg(feature = "report")]
 use super::run_dir::RunDir;
+use crate::env::humanoid::driver::BodyDriver;
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::nn::{ActorCritic, Policy};
@@ -121,6 +122,12 @@ pub trait Task: Send + Sync {
         device: &Device,
     ) -> Result<Box<dyn Algorithm>> {
         ppo_learner(config, envs, device)
+    }
+
+    /// What moves a simulated body by a policy of this task: the policy itself, unless it steers something
+    /// else.
+    fn driver(&self, policy: &Policy) -> Box<dyn BodyDriver> {
+        Box::new(policy.clone())
     }
 
     /// Runs `episodes` fixed episodes to their end, the same ones for every policy.

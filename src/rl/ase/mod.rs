@@ -2,16 +2,17 @@
 //! vector that it observes. It is [AMP](super::amp) whose environments carry latents.
 //!
 //! [`Ase`] holds what may be chosen, [`LatentDraw`] says which latents there are, and [`LatentEnv`] are
-//! environments around environments whose agents move under them; a [`LatentWalk`] is the same on the host.
+//! environments around environments whose agents move under them; a [`LatentDriver`] moves
+//! bodies on the host.
 
 mod latent_draw;
+mod latent_driver;
 mod latent_env;
-mod latent_walk;
 
 use super::amp::{LatentUse, SkillRewards};
 pub use latent_draw::LatentDraw;
+pub use latent_driver::LatentDriver;
 pub use latent_env::LatentEnv;
-pub use latent_walk::LatentWalk;
 use serde::{Deserialize, Serialize};
 
 /// How latents come to mean movements.

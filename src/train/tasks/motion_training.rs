@@ -3,7 +3,7 @@
 
 use super::motions;
 use crate::env::EnvBatch;
-use crate::env::humanoid::task::play::MeanPolicy;
+use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::task::{HumanoidTask, open};
 use crate::gpu::Device;
 use crate::nn::Policy;
@@ -11,7 +11,7 @@ use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
 use crate::rl::Algorithm;
 use crate::rl::amp::SkillRewards;
-use crate::rl::ase::{LatentDraw, LatentEnv, LatentWalk};
+use crate::rl::ase::{LatentDraw, LatentDriver, LatentEnv};
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
@@ -20,7 +20,6 @@ use crate::train::task::{Loaded, Task, ppo_learner};
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 use serde::Serialize;
-use std::cell::RefCell;
 use std::sync::Arc;
 
 /// What a task of a simulated body with recordings decides for itself. Its value holds the choices.
@@ -64,7 +63,7 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
     fn evaluate(
         task: Arc<Self::Played>,
         library: &MotionLibrary,
-        policy: &MeanPolicy,
+        driver: &dyn BodyDriver,
         episodes: usize,
         seed: u32,
     ) -> Self::Report;
@@ -102,18 +101,8 @@ pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
 impl<T: MotionTask> MotionTraining<T> {
     fn rate(&self, policy: &Policy, episodes: usize) -> T::Report {
         let task = self.task.judged(&self.library, EPISODES_SEED);
-        let walk = self.task.latents(&self.library);
-        let walk = walk.map(|draw| RefCell::new(LatentWalk::new(&draw, episodes, EPISODES_SEED)));
-        let mean = |observation: &[f32]| match &walk {
-            None => policy.mean(observation),
-            Some(walk) => {
-                let mut walk = walk.borrow_mut();
-                let action = policy.mean(&walk.observed(observation));
-                walk.advance();
-                action
-            }
-        };
-        T::evaluate(task, &self.library, &mean, episodes, EPISODES_SEED)
+        let driver = self.driver(policy);
+        T::evaluate(task, &self.library, &*driver, episodes, EPISODES_SEED)
     }
 }
 
@@ -166,6 +155,13 @@ impl<T: MotionTask> Task for MotionTraining<T> {
                 motions::learner(config, amp, &skills, latents, &self.library, envs, device)
             }
             None => ppo_learner(config, envs, device),
+        }
+    }
+
+    fn driver(&self, policy: &Policy) -> Box<dyn BodyDriver> {
+        match self.task.latents(&self.library) {
+            None => Box::new(policy.clone()),
+            Some(draw) => Box::new(LatentDriver::new(policy, &draw, EPISODES_SEED)),
         }
     }
 

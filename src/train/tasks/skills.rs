@@ -5,9 +5,9 @@ use super::motion_training::{MotionTask, load};
 use super::motions::Performance;
 use super::presets::{discriminator, styled};
 use crate::env::EnvSpec;
-use crate::env::humanoid::fidelity::FidelityReport;
-use crate::env::humanoid::imitate::{ImitateTask, evaluate};
-use crate::env::humanoid::task::play::MeanPolicy;
+use crate::env::humanoid::driver::BodyDriver;
+use crate::env::humanoid::imitate::ImitateTask;
+use crate::env::humanoid::skills::{SkillReport, evaluate};
 use crate::env::humanoid::task::{EpisodeRules, spec};
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
@@ -69,7 +69,7 @@ struct Skills {
 
 impl MotionTask for Skills {
     type Played = ImitateTask;
-    type Report = FidelityReport;
+    type Report = SkillReport;
 
     const PERFORMANCE: Performance = Performance::Boxing;
 
@@ -100,36 +100,49 @@ impl MotionTask for Skills {
 
     fn evaluate(
         task: Arc<ImitateTask>,
-        _library: &MotionLibrary,
-        policy: &MeanPolicy,
+        library: &MotionLibrary,
+        driver: &dyn BodyDriver,
         episodes: usize,
         seed: u32,
-    ) -> FidelityReport {
-        evaluate(task, policy, episodes, seed)
+    ) -> SkillReport {
+        evaluate(task, library, driver, episodes, seed)
     }
 
-    fn evaluation(found: &FidelityReport) -> Evaluation {
+    fn evaluation(found: &SkillReport) -> Evaluation {
+        let own = [
+            ("coverage_entropy", found.fidelity.coverage_entropy),
+            ("survival_changing", found.survival_changing),
+            ("repeatability", found.repeatability),
+        ];
+        let measures = fidelity_measures(&found.fidelity).into_iter().chain(own);
         Evaluation {
-            episodes: found.episodes,
-            success: found.survival,
+            episodes: found.fidelity.episodes,
+            success: found.fidelity.survival,
             success_name: "survival",
-            measures: fidelity_measures(found).into_iter().collect(),
+            measures: measures.collect(),
         }
     }
 
     fn sentence(&self, found: &Evaluation) -> String {
         format!(
-            "{:.1} % of {} episodes stay up for {} s under changing latents, {:.3} m from the recordings, {:.0} % of \
-             the clips covered",
+            "{:.1} % of {} episodes stay up for {} s under changing latents; {:.0} % of the clips covered, the same \
+             clip under the same latent in {:.0} % of the time",
             100.0 * found.success,
             found.episodes,
             self.rules.episode_s,
-            found.measure("dtw_m"),
             100.0 * found.measure("coverage"),
+            100.0 * found.measure("repeatability"),
         )
     }
 
-    fn details(found: &FidelityReport) -> String {
-        format!("episode {:.2} s on average\n", found.mean_episode_s)
+    fn details(found: &SkillReport) -> String {
+        format!(
+            "{:.1} % stay up under latents that change every second; episode {:.2} s on average, {:.3} m from the \
+             recordings; entropy of the clips {:.2} of the largest\n",
+            100.0 * found.survival_changing,
+            found.fidelity.mean_episode_s,
+            found.fidelity.dtw_m,
+            found.fidelity.coverage_entropy,
+        )
     }
 }
