@@ -51,18 +51,24 @@ fn tasks(episode_s: f32) -> [Arc<dyn HumanoidTask>; 4] {
     ]
 }
 
+/// The task `imitate`, with episodes of so many seconds.
+pub fn imitate(episode_s: f32) -> Arc<dyn HumanoidTask> {
+    let [imitate, ..] = tasks(episode_s);
+    imitate
+}
+
 /// What some steps came to.
 #[derive(PartialEq, Debug)]
-struct Played {
-    observations: Vec<f32>,
-    rewards: Vec<f32>,
-    ends: Vec<u32>,
-    groups: Vec<u32>,
-    finals: Vec<f32>,
+pub struct Played {
+    pub observations: Vec<f32>,
+    pub rewards: Vec<f32>,
+    pub ends: Vec<u32>,
+    pub groups: Vec<u32>,
+    pub finals: Vec<f32>,
 }
 
 /// Plays steps of actions near the pose that the environments rest in.
-fn play(device: &Device, envs: &mut dyn VecEnv, steps: usize, seed: u32) -> Played {
+pub fn play(device: &Device, envs: &mut dyn VecEnv, steps: usize, seed: u32) -> Played {
     let (spec, rest) = (*envs.spec(), envs.rest_action());
     let (rows, dim) = (spec.rows(), spec.observation.dim());
     let (mut reward, mut finals) = (
