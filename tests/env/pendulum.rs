@@ -198,7 +198,7 @@ fn latents_come_to_mean_ways_of_turning() {
     };
     let mut learner = learner(&envs, &ase);
     let mut cosine = 0.0;
-    for update in 0..150 {
+    for update in 0..500 {
         let found = learner.iterate(&mut envs, update * 1024).unwrap();
         let own = found.losses.iter().find(|(name, _)| *name == "encoder_cosine");
         cosine = own.unwrap().1;

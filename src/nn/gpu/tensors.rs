@@ -1,7 +1,7 @@
 //! Operations on tensors that burn has not, or not for devices like lavapipe.
 
 use crate::gpu::tensor::{from_buffer, to_buffer};
-use crate::gpu::{Array, Buffer, Gpu};
+use crate::gpu::{Array, Gpu};
 use burn::tensor::{Int, Tensor};
 use std::ops::Range;
 
