@@ -40,8 +40,6 @@ pub struct Discriminator {
     sums: Array,
     /// Sum of the penalties' squared norms.
     penalties: Array,
-    /// Sum of the style rewards of the present rollouts.
-    style: Array,
     steps: AdaptiveSteps,
     updates: u64,
     seed: u32,
@@ -79,7 +77,6 @@ impl Discriminator {
             fresh: Array::zeroed(device, 0),
             sums: Array::zeroed(device, SUMS),
             penalties: Array::zeroed(device, 1),
-            style: Array::zeroed(device, 1),
             steps: AdaptiveSteps::new(config.steps),
             updates: 0,
             seed,
@@ -100,7 +97,6 @@ impl Discriminator {
             .iter()
             .map(|rollout| self.windows(rollout))
             .collect();
-        self.style = Array::zeroed(&self.device, 1);
         for (rollout, windows) in rollouts.iter_mut().zip(&windows) {
             let samples = rollout.samples();
             let mut seen = windows.clone();
@@ -121,7 +117,6 @@ impl Discriminator {
                     style_reward::launch(gpu, output.buffer(), reward.buffer(), &params);
                 }
             }
-            rows::add_sum(&self.device, reward, &mut self.style);
         }
         self.fresh = rows::join(&self.device, &windows.iter().collect::<Vec<_>>());
     }
@@ -269,23 +264,20 @@ impl Discriminator {
             .step(&mut self.parameters, &self.gradient, rate, max);
     }
 
-    /// Closes an update: the style reward of a step, what the discriminator lost, and how often it was right,
-    /// by their names in `metrics.jsonl`.
+    /// Closes an update whose style reward of a step is known: what the discriminator lost, and how often it was
+    /// right, by their names in `metrics.jsonl`.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn conclude(&mut self) -> Result<Vec<(&'static str, f64)>> {
+    pub fn conclude(&mut self, style: f64) -> Result<Vec<(&'static str, f64)>> {
         let sums = self.sums.read(&self.device)?;
         let penalties = self.penalties.read(&self.device)?[0];
-        let samples = (self.fresh.len() / self.dim()).max(1);
-        let style = f64::from(self.style.read(&self.device)?[0]) / samples as f64;
         let of = |i: usize| f64::from(sums[i]);
         let recorded = of(1).max(1.0);
         let agents = of(4) / of(3).max(1.0);
         let steps = self.steps.count();
         self.steps.update(agents, style);
         Ok(vec![
-            ("style_reward", style),
             ("discriminator_steps", steps as f64),
             ("discriminator_loss", of(0) / (of(1) + of(3)).max(1.0)),
             ("discriminator_penalty", f64::from(penalties) / recorded),
