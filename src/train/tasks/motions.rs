@@ -11,6 +11,7 @@ use crate::physics::motion_library::MotionLibrary;
 use crate::physics::motion_list::{ClipReport, MotionList, MotionListOptions};
 use crate::rl::Algorithm;
 use crate::rl::amp::{Amp, AmpLearner};
+use crate::rl::task_weight::TaskWeight;
 use crate::train::config::Config;
 use crate::train::data::SYNTHETIC_SEED;
 use crate::train::evaluation::EvalOptions;
@@ -109,7 +110,8 @@ pub fn learner(
     let (ppo, seed) = (&config.ppo, config.seed);
     let demonstrations = Arc::new(demonstrations(library));
     let learner = AmpLearner::new(ppo, amp, &demonstrations, envs, device, seed)?;
-    Ok(Box::new(learner))
+    let weight = TaskWeight::new(&config.task_weight, amp.lambda());
+    Ok(Box::new(learner.with_task_weight(weight)))
 }
 
 /// Refuses what `footwork eval` has for motion matching alone.
