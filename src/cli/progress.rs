@@ -79,7 +79,7 @@ impl Observer for Progress {
     }
 }
 
-/// The style reward of a step, and how many of the agents' windows and of the recorded ones the discriminator
+/// The style reward of a step, the task's weight if a rule finds it, and how many of the agents' windows and of the recorded ones the discriminator
 /// recognised; nothing where there is none.
 fn style(row: &UpdateMetrics) -> String {
     let Some(reward) = row.rate("style_reward") else {
@@ -88,7 +88,11 @@ fn style(row: &UpdateMetrics) -> String {
     let [agents, recorded] =
         ["agent_accuracy", "recorded_accuracy"].map(|name| 100.0 * row.rate(name).unwrap_or(0.0));
     let fall = 100.0 * row.rate("fall").unwrap_or(0.0);
-    format!("  style {reward:.2}  recognised {agents:.0} / {recorded:.0} %  fall {fall:>3.0} %")
+    let weight = row.rate("task_weight");
+    let weight = weight.map_or(String::new(), |weight| format!("  task weight {weight:.2}"));
+    format!(
+        "  style {reward:.2}{weight}  recognised {agents:.0} / {recorded:.0} %  fall {fall:>3.0} %"
+    )
 }
 
 impl Drop for Progress {

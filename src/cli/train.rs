@@ -12,6 +12,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use footwork::env::EnvSpec;
 use footwork::gpu::{Choice, Device};
 use footwork::rl::rollout::check_fits;
+use footwork::rl::task_weight::WeightRule;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Preset};
 use footwork::train::memory;
@@ -64,6 +65,15 @@ pub struct Train {
         help_heading = "Among obstacles"
     )]
     success_bonus: Option<f64>,
+    /// How the task's reward weighs beside the style's: --set task_weight.rule=RULE
+    #[arg(
+        long,
+        value_name = "RULE",
+        value_enum,
+        conflicts_with = "resume",
+        help_heading = "In the style of recordings"
+    )]
+    task_weight: Option<WeightRule>,
 }
 
 /// What every kind of training may be asked for.
@@ -197,6 +207,7 @@ impl Train {
         if self.no_curriculum {
             config.set("task.curriculum", false.into())?;
         }
+        config.task_weight.rule = self.task_weight.unwrap_or(config.task_weight.rule);
         if let Some(bonus) = self.success_bonus {
             config.set("task.success_bonus", bonus.into())?;
         }

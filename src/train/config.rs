@@ -6,9 +6,10 @@
 use crate::gpu::Choice;
 use crate::input_file;
 use crate::nn::network::NetworkError;
-use crate::rl::amp::Amp;
+use crate::rl::amp::{Amp, DiscriminatorLoss};
 use crate::rl::ase::Ase;
 use crate::rl::ppo::Ppo;
+use crate::rl::task_weight::{TaskWeightConfig, WeightRule};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
@@ -76,6 +77,13 @@ pub struct Config {
     /// Those of latents, for the task that has them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ase: Option<Ase>,
+    /// How the weights of the rewards of task and style are found, for tasks that have both.
+    #[serde(skip_serializing_if = "is_default", default)]
+    pub task_weight: TaskWeightConfig,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// The choices of a task's preset.
@@ -207,6 +215,7 @@ impl Config {
             ppo: chosen.ppo,
             amp: chosen.amp,
             ase: chosen.ase,
+            task_weight: TaskWeightConfig::default(),
         }
     }
 
@@ -329,6 +338,8 @@ impl Config {
         all.entry("unit_m").or_insert(0.0.into());
         all.entry("max_time_s").or_insert(0.0.into());
         all.entry("stop_at_success").or_insert(0.0.into());
+        let weight = table(&TaskWeightConfig::default());
+        all.entry("task_weight").or_insert(weight.into());
         all
     }
 
@@ -352,7 +363,7 @@ impl Config {
     /// run's `config.toml`.
     pub fn difference(&self, other: &str) -> Option<String> {
         let decisive = |mut all: toml::Table| {
-            all.retain(|key, _| matches!(key, "seed" | "task" | "ppo" | "amp"));
+            all.retain(|key, _| DECISIVE.contains(&key));
             all
         };
         let other = toml::from_str(other).unwrap_or_default();
@@ -392,9 +403,42 @@ impl Config {
         }
         check_ppo(&self.ppo)?;
         self.amp.as_ref().map_or(Ok(()), check_amp)?;
-        self.ase.as_ref().map_or(Ok(()), check_ase)
+        self.ase.as_ref().map_or(Ok(()), check_ase)?;
+        self.check_task_weight()
+    }
+
+    /// Refuses a rule for the weights of rewards that cannot be weighed by it.
+    fn check_task_weight(&self) -> Result<(), ConfigError> {
+        let chosen = &self.task_weight;
+        within(
+            "task_weight.style_reference",
+            chosen.style_reference,
+            0.0,
+            1e3,
+        )?;
+        if chosen.rule == WeightRule::Fixed {
+            return Ok(());
+        }
+        let why = match &self.amp {
+            Some(amp) if amp.loss == DiscriminatorLoss::Hinge => {
+                "it compares style rewards by their ratio, and those of amp.loss = \"hinge\" may be negative".into()
+            }
+            Some(amp) if amp.task_weight > 0.0 => return Ok(()),
+            _ => format!(
+                "it weighs the rewards of task and style, and the task `{}` has but one of them",
+                self.task.name
+            ),
+        };
+        Err(ConfigError::Value {
+            key: "task_weight.rule",
+            value: "pd".into(),
+            why,
+        })
     }
 }
+
+/// Keys that decide over what is learned.
+const DECISIVE: [&str; 5] = ["seed", "task", "ppo", "amp", "task_weight"];
 
 /// Bytes of the longest configuration.
 const MAX_BYTES: u64 = 1 << 24;

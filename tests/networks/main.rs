@@ -10,6 +10,7 @@ mod autodiff;
 mod penalty;
 mod refused;
 mod running;
+mod task_weight;
 
 use footwork::gpu::{Array, Choice, Device};
 use footwork::kernels::rng::{gaussian, random4};

@@ -42,8 +42,7 @@ pub struct Discriminator {
     sums: Array,
     /// Sum of the penalties' squared norms.
     penalties: Array,
-    /// Sums of the style rewards and of the skill rewards of the present rollouts.
-    style: Array,
+    /// Sum of the skill rewards of the present rollouts.
     skill: Array,
     steps: AdaptiveSteps,
     updates: u64,
@@ -85,7 +84,6 @@ impl Discriminator {
             fresh_latents: Array::zeroed(device, 0),
             sums: Array::zeroed(device, SUMS),
             penalties: Array::zeroed(device, 1),
-            style: Array::zeroed(device, 1),
             skill: Array::zeroed(device, 1),
             steps: AdaptiveSteps::new(config.steps),
             updates: 0,
@@ -105,7 +103,6 @@ impl Discriminator {
     /// Fills in the rewards of rollouts whose observations are raw: of the style, and of an encoder's finding
     /// the latents.
     pub fn reward(&mut self, rollouts: &mut [Rollout]) {
-        self.style = Array::zeroed(&self.device, 1);
         self.skill = Array::zeroed(&self.device, 1);
         let (mut fresh, mut fresh_latents) = (Vec::new(), Vec::new());
         for rollout in rollouts {
@@ -143,7 +140,7 @@ impl Discriminator {
         output
     }
 
-    fn reward_style(&mut self, output: &Array, rollout: &mut Rollout) {
+    fn reward_style(&self, output: &Array, rollout: &mut Rollout) {
         let params = style_reward::Params {
             samples: rollout.samples() as u32,
             outputs: self.network.outputs() as u32,
@@ -157,7 +154,6 @@ impl Discriminator {
                 style_reward::launch(gpu, output.buffer(), reward.buffer(), &params);
             }
         }
-        rows::add_sum(&self.device, reward, &mut self.style);
     }
 
     fn reward_skill(&mut self, output: &Array, latents: &Array, rollout: &mut Rollout) {
@@ -357,23 +353,20 @@ impl Discriminator {
         rows::join(&self.device, &parts)
     }
 
-    /// Closes an update: the style reward of a step, what the discriminator lost, and how often it was right,
-    /// by their names in `metrics.jsonl`.
+    /// Closes an update whose style reward of a step is known: what the discriminator lost, and how often it was
+    /// right, by their names in `metrics.jsonl`.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn conclude(&mut self) -> Result<Vec<(&'static str, f64)>> {
+    pub fn conclude(&mut self, style: f64) -> Result<Vec<(&'static str, f64)>> {
         let sums = self.sums.read(&self.device)?;
         let penalties = self.penalties.read(&self.device)?[0];
-        let samples = (self.fresh.len() / self.dim()).max(1);
-        let style = f64::from(self.style.read(&self.device)?[0]) / samples as f64;
         let of = |i: usize| f64::from(sums[i]);
         let recorded = of(1).max(1.0);
         let agents = of(4) / of(3).max(1.0);
         let steps = self.steps.count();
         self.steps.update(agents, style);
         let mut measures = vec![
-            ("style_reward", style),
             ("discriminator_steps", steps as f64),
             ("discriminator_loss", of(0) / (of(1) + of(3)).max(1.0)),
             ("discriminator_penalty", f64::from(penalties) / recorded),
@@ -381,6 +374,7 @@ impl Discriminator {
             ("agent_accuracy", agents),
         ];
         if self.latents.found() > 0 {
+            let samples = (self.fresh.len() / self.dim()).max(1);
             let skill = f64::from(self.skill.read(&self.device)?[0]) / samples as f64;
             // Of the agents' windows of a step, the fresh ones have a latent.
             let count = self.config.minibatch_size;

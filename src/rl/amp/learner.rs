@@ -7,6 +7,7 @@ use crate::gpu::Device;
 use crate::nn::Policy;
 use crate::rl::gae::RewardSource;
 use crate::rl::ppo::{Diversity, Ppo, PpoLearner};
+use crate::rl::task_weight::TaskWeight;
 use crate::rl::{Algorithm, Iteration};
 use anyhow::{Result, bail};
 use std::sync::Arc;
@@ -54,6 +55,12 @@ impl AmpLearner {
             discriminator: Discriminator::new(amp, latents, demonstrations, device, samples, seed)?,
         })
     }
+
+    /// The same learner whose rewards of task and style, if it has both, are weighed so.
+    pub fn with_task_weight(mut self, weight: TaskWeight) -> Self {
+        self.ppo = self.ppo.with_task_weight(weight);
+        self
+    }
 }
 
 impl Algorithm for AmpLearner {
@@ -66,7 +73,8 @@ impl Algorithm for AmpLearner {
         self.ppo.learn();
         self.discriminator.learn();
         let mut iteration = self.ppo.conclude(envs, steps, begin, [policy_s, env_s])?;
-        iteration.losses.extend(self.discriminator.conclude()?);
+        let style = iteration.loss("style_reward").unwrap_or(0.0);
+        iteration.losses.extend(self.discriminator.conclude(style)?);
         match iteration
             .losses
             .iter()

@@ -56,10 +56,17 @@ pub struct Amp {
     pub replay_capacity: usize,
     /// Windows of each update that enter the replay, in place of the oldest.
     pub replay_per_update: usize,
-    /// Weight of the advantages of the style reward.
+    /// Weight of the advantages of the style reward; where a rule finds the weights, what they begin with.
     pub style_weight: f32,
-    /// Weight of the advantages of the task's reward; 0 if the task has none.
+    /// Weight of the advantages of the task's reward, likewise; 0 if the task has none.
     pub task_weight: f32,
+}
+
+impl Amp {
+    /// Ratio of the weights of task and style.
+    pub fn lambda(&self) -> f64 {
+        f64::from(self.task_weight) / f64::from(self.style_weight)
+    }
 }
 
 impl Default for Amp {

@@ -12,6 +12,7 @@ use crate::physics::motion_list::{ClipReport, MotionList, MotionListOptions};
 use crate::rl::Algorithm;
 use crate::rl::amp::{Amp, AmpLearner, SkillRewards};
 use crate::rl::ase::LatentDraw;
+use crate::rl::task_weight::TaskWeight;
 use crate::train::config::Config;
 use crate::train::data::SYNTHETIC_SEED;
 use crate::train::evaluation::EvalOptions;
@@ -114,7 +115,8 @@ pub fn learner(
     let clips: Vec<&[f32]> = latents.iter().flat_map(|draw| draw.clips()).collect();
     let demonstrations = Arc::new(demonstrations(library, &clips));
     let learner = AmpLearner::new(ppo, amp, skills, &demonstrations, envs, device, seed)?;
-    Ok(Box::new(learner))
+    let weight = TaskWeight::new(&config.task_weight, amp.lambda());
+    Ok(Box::new(learner.with_task_weight(weight)))
 }
 
 /// Refuses what `footwork eval` has for motion matching alone.
