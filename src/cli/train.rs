@@ -11,6 +11,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use footwork::env::EnvSpec;
 use footwork::gpu::{Choice, Device};
+use footwork::rl::ase::LowLevel;
 use footwork::rl::rollout::check_fits;
 use footwork::rl::task_weight::WeightRule;
 use footwork::train::checkpoint::Checkpoint;
@@ -74,6 +75,15 @@ pub struct Train {
         help_heading = "In the style of recordings"
     )]
     task_weight: Option<WeightRule>,
+    /// How latents come to mean movements, for `skills`: --set ase.low_level=WAY
+    #[arg(
+        long,
+        value_name = "WAY",
+        value_enum,
+        conflicts_with = "resume",
+        help_heading = "In the style of recordings"
+    )]
+    low_level: Option<LowLevel>,
 }
 
 /// What every kind of training may be asked for.
@@ -206,6 +216,14 @@ impl Train {
         }
         if self.no_curriculum {
             config.set("task.curriculum", false.into())?;
+        }
+        match (&mut config.ase, self.low_level) {
+            (Some(ase), Some(low_level)) => ase.low_level = low_level,
+            (None, Some(_)) => {
+                let why = format!("--low-level is for `skills`: `{}` has no latents", entry.name);
+                return Err(Usage(why).into());
+            }
+            (_, None) => {}
         }
         config.task_weight.rule = self.task_weight.unwrap_or(config.task_weight.rule);
         if let Some(bonus) = self.success_bonus {
