@@ -43,12 +43,13 @@ fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
 }
 
 /// What all tasks measure of motion.
-pub fn fidelity_measures(found: &FidelityReport) -> [(&'static str, f64); 4] {
+pub fn fidelity_measures(found: &FidelityReport) -> [(&'static str, f64); 5] {
     [
         ("episode_length_mean_s", found.mean_episode_s),
         ("speed_ratio", found.speed_ratio),
         ("dtw_m", found.dtw_m),
         ("coverage", found.coverage),
+        ("power_w", found.power_w),
     ]
 }
 
