@@ -5,7 +5,7 @@ use super::run::Run;
 use super::say::{say, show};
 use anyhow::Result;
 use clap::Args;
-use footwork::train::body_policy::BodyPolicy;
+use footwork::train::body_policy::{BodyPolicy, StyleReport};
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::evaluation::EvalOptions;
 use std::path::PathBuf;
@@ -45,6 +45,9 @@ pub struct Eval {
     /// to be seen, with each remedy
     #[arg(long)]
     motion_quality: bool,
+    /// Rate a run of skills: what its latents lead to
+    #[arg(long)]
+    skills: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -56,6 +59,11 @@ impl Eval {
             return Err(Usage("--episodes must be from 1 to 1000000".into()).into());
         }
         let run = Run::open(&self.run, self.data.as_deref())?;
+        if self.skills && run.config.ase.is_none() {
+            let (path, task) = (self.run.display(), &run.config.task.name);
+            let why = format!("--skills: {path} is a run of `{task}`, which has no skills");
+            return Err(Usage(why).into());
+        }
         let checkpoint = run.checkpoint(&run.path)?;
         let wanted = EvalOptions {
             episodes: self.episodes,
@@ -65,9 +73,13 @@ impl Eval {
         };
         let mut report = run.task.report(&checkpoint.policy, &wanted)?;
         let steps = checkpoint.header.steps;
-        if let Some(style) = self.style(&run, checkpoint)? {
-            report.json["style"] = style.into();
-            report.text += &format!("style reward {style:.2} a step\n");
+        if let Some(found) = self.style(&run, checkpoint)? {
+            report.json["style"] = found.style.into();
+            report.text += &format!("style reward {:.2} a step\n", found.style);
+            if let Some(cosine) = found.encoder_cosine {
+                report.json["encoder_cosine"] = cosine.into();
+                report.text += &format!("the encoder finds latents with a cosine of {cosine:.2}\n");
+            }
         }
         match self.json {
             true => say!("{}", report.json),
@@ -82,11 +94,11 @@ impl Eval {
     }
 
     /// What a run's discriminator says of a body's first episodes.
-    fn style(&self, run: &Run, checkpoint: Checkpoint) -> Result<Option<f64>> {
+    fn style(&self, run: &Run, checkpoint: Checkpoint) -> Result<Option<StyleReport>> {
         let Some(episodes) = run.task.body() else {
             return Ok(None);
         };
         let mut envs = episodes.open_all(self.episodes.min(STYLE_EPISODES));
-        Ok(BodyPolicy::new(checkpoint, &run.config)?.mean_style(&mut envs))
+        Ok(BodyPolicy::new(checkpoint, &run.config, &*run.task)?.judged(&mut envs))
     }
 }

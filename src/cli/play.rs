@@ -42,7 +42,7 @@ impl Play {
         run.checkpoint(&run.path)?;
         let title = format!("footwork: {}", run.folder.path().display());
         if let Some(body) = run.task.body() {
-            let policies = policies(&run, |run, of| BodyPolicy::new(of, &run.config))?;
+            let policies = policies(&run, |run, of| BodyPolicy::new(of, &run.config, &*run.task))?;
             let context = BodyContext::new(body);
             return window::play_body(&Gpu::drawing()?, &title, context, policies);
         }

@@ -137,8 +137,8 @@ impl Render {
         if let Some(body) = run.task.body() {
             let mut envs = body.open(self.episode as u32);
             let model = envs.task().model().clone();
-            let mean = |observation: &[f32]| policy.mean(observation);
-            let motion = play::record(&mut envs, &mean, &run.config.task.name);
+            let driver = run.task.driver(&policy);
+            let motion = play::record(&mut envs, &*driver, &run.config.task.name);
             if let Output::Png(path) = &output {
                 film_strip(&gpu, &model, &motion, [self.start, self.seconds], path)?;
                 say!("{}", path.display());

@@ -4,6 +4,7 @@
 //! generalised advantage estimation, normalisation, the objectives.
 
 pub mod amp;
+pub mod ase;
 pub mod gae;
 pub mod ppo;
 pub mod rollout;

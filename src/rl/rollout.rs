@@ -23,6 +23,8 @@ pub struct Rollout {
     pub reward: Array,
     /// `[steps][rows]`, of the style, where there is one.
     pub style_reward: Array,
+    /// `[steps][rows]`, of being found by an encoder, where there is one.
+    pub skill_reward: Array,
     /// `[steps][rows]`, see [`crate::env::termination`].
     pub termination: Array<u32>,
     /// `[steps][rows]`, see [`Transition::group`].
@@ -50,6 +52,7 @@ impl Rollout {
             log_prob_and_value: zeros((1 + streams) * samples),
             reward: zeros(samples),
             style_reward: zeros(samples),
+            skill_reward: zeros(samples),
             termination: Array::zeroed(device, samples),
             group: Array::zeroed(device, samples),
             final_observation: zeros(spec.final_steps(steps) * rows * observation),

@@ -2,44 +2,55 @@
 
 use super::checkpoint::Checkpoint;
 use super::config::Config;
+use super::task::Task;
+use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::env::humanoid::recorded::observe;
 use crate::env::humanoid::task::CpuHumanoidEnv;
 use crate::env::humanoid::task::play::play_episodes;
-use crate::nn::Policy;
 use crate::rl::amp::FrozenDiscriminator;
 use anyhow::{Context, Result};
 
-/// A checkpoint's policy, with its discriminator if the run has one.
+/// What a checkpoint's policy drives, with its discriminator if the run has one.
 pub struct BodyPolicy {
-    /// The policy.
-    pub policy: Policy,
+    /// Who acts.
+    pub driver: Box<dyn BodyDriver>,
     /// The discriminator.
     pub discriminator: Option<FrozenDiscriminator>,
 }
 
+/// What a discriminator says of episodes, of a step on average.
+pub struct StyleReport {
+    /// Its reward.
+    pub style: f64,
+    /// The cosine between the latent and what the encoder finds, if there is one.
+    pub encoder_cosine: Option<f64>,
+}
+
 impl BodyPolicy {
-    /// Those of a checkpoint of a run with this configuration.
+    /// Those of a checkpoint of a run of `task` with this configuration.
     ///
     /// # Errors
     /// The checkpoint is not of such a run.
-    pub fn new(mut checkpoint: Checkpoint, config: &Config) -> Result<BodyPolicy> {
+    pub fn new(mut checkpoint: Checkpoint, config: &Config, task: &dyn Task) -> Result<BodyPolicy> {
         let style = checkpoint.header.spec.style;
         let discriminator = match &config.amp {
             None => None,
             Some(amp) => {
                 let mut learner = checkpoint.sections.take("learner")?;
-                let loaded = FrozenDiscriminator::load(amp, &mut learner, style);
+                let latents = config.ase.as_ref().map(|ase| ase.rewards().latents);
+                let latents = latents.unwrap_or_default();
+                let loaded = FrozenDiscriminator::load(amp, latents, &mut learner, style);
                 Some(loaded.context("the checkpoint's discriminator cannot be read")?)
             }
         };
         Ok(BodyPolicy {
-            policy: checkpoint.policy,
+            driver: task.driver(&checkpoint.policy),
             discriminator,
         })
     }
 
-    /// Mean style reward of a step, over one episode of each environment; `None` without a discriminator.
-    pub fn mean_style(&self, envs: &mut CpuHumanoidEnv) -> Option<f64> {
+    /// What the discriminator says of one episode of each environment; `None` without one.
+    pub fn judged(&self, envs: &mut CpuHumanoidEnv) -> Option<StyleReport> {
         let discriminator = self.discriminator.as_ref()?;
         let moment = |envs: &CpuHumanoidEnv, env: usize| {
             let state = &envs.batch.worlds[env].state;
@@ -47,16 +58,24 @@ impl BodyPolicy {
         };
         let count = envs.batch.worlds.len();
         let mut before: Vec<Vec<f32>> = (0..count).map(|env| moment(envs, env)).collect();
-        let (mut sum, mut steps) = (0.0, 0usize);
-        let mean = |observation: &[f32]| self.policy.mean(observation);
-        play_episodes(envs, &mean, |envs, running| {
+        let (mut style, mut cosine, mut steps) = (0.0, None, 0usize);
+        play_episodes(envs, &*self.driver, DriverState::default(), |envs, running, state| {
+            let dim = state.latents.len() / count;
             for env in (0..count).filter(|&env| running[env]) {
-                let now = moment(envs, env);
-                sum += f64::from(discriminator.reward([&before[env], &now]));
+                let (now, latent) = (moment(envs, env), &state.latents[env * dim..][..dim]);
+                let moments = [&before[env][..], &now];
+                style += f64::from(discriminator.reward(moments, latent));
+                if let Some(found) = discriminator.cosine(moments, latent) {
+                    *cosine.get_or_insert(0.0) += f64::from(found);
+                }
                 steps += 1;
                 before[env] = now;
             }
         });
-        Some(sum / steps.max(1) as f64)
+        let mean = |sum: f64| sum / steps.max(1) as f64;
+        Some(StyleReport {
+            style: mean(style),
+            encoder_cosine: cosine.map(mean),
+        })
     }
 }

@@ -7,6 +7,7 @@ use crate::gpu::Choice;
 use crate::input_file;
 use crate::nn::network::NetworkError;
 use crate::rl::amp::{Amp, DiscriminatorLoss};
+use crate::rl::ase::Ase;
 use crate::rl::ppo::Ppo;
 use crate::rl::task_weight::{TaskWeightConfig, WeightRule};
 use serde::de::DeserializeOwned;
@@ -73,6 +74,9 @@ pub struct Config {
     /// Those of a discriminator, for tasks that have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub amp: Option<Amp>,
+    /// Those of latents, for the task that has them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ase: Option<Ase>,
     /// How the weights of the rewards of task and style are found, for tasks that have both.
     #[serde(skip_serializing_if = "is_default", default)]
     pub task_weight: TaskWeightConfig,
@@ -90,6 +94,8 @@ pub struct TaskPreset {
     pub ppo: Ppo,
     /// Those of a discriminator, if the task has one.
     pub amp: Option<Amp>,
+    /// Those of latents, if the task has any.
+    pub ase: Option<Ase>,
     /// Environment steps of a training.
     pub steps: u64,
 }
@@ -208,6 +214,7 @@ impl Config {
             },
             ppo: chosen.ppo,
             amp: chosen.amp,
+            ase: chosen.ase,
             task_weight: TaskWeightConfig::default(),
         }
     }
@@ -396,6 +403,7 @@ impl Config {
         }
         check_ppo(&self.ppo)?;
         self.amp.as_ref().map_or(Ok(()), check_amp)?;
+        self.ase.as_ref().map_or(Ok(()), check_ase)?;
         self.check_task_weight()
     }
 
@@ -533,6 +541,16 @@ fn check_amp(amp: &Amp) -> Result<(), ConfigError> {
     within("amp.replay_per_update", amp.replay_per_update, 1, 1 << 22)?;
     within("amp.style_weight", amp.style_weight, 1e-6, 1e3)?;
     within("amp.task_weight", amp.task_weight, 0.0, 1e3)
+}
+
+fn check_ase(ase: &Ase) -> Result<(), ConfigError> {
+    let [least, most] = ase.kept_steps;
+    within("ase.latent", ase.latent, 2, 256)?;
+    within("ase.kept_steps", most, 1, 10_000)?;
+    within("the first of ase.kept_steps", least, 1, most)?;
+    within("ase.skill_weight", ase.skill_weight, 0.0, 1e3)?;
+    within("ase.diversity", ase.diversity, 0.0, 1e3)?;
+    within("ase.spread", ase.spread, 0.0, 10.0)
 }
 
 /// Writes `changes` over `table`, refusing keys that `table` does not know and values of another

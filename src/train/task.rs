@@ -12,6 +12,7 @@ use super::locomotion::Locomotion;
 use super::metrics::UpdateMetrics;
 #[cfg(feature = "report")]
 use super::run_dir::RunDir;
+use crate::env::humanoid::driver::BodyDriver;
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::nn::{ActorCritic, Policy};
@@ -63,7 +64,10 @@ impl TaskEntry {
         let spec = (self.spec)(config)?;
         ActorCritic::new(&config.ppo.network, &spec.observation, spec.action, 1)?;
         if let Some(amp) = &config.amp {
-            network(amp, 2 * spec.style).map_err(ConfigError::Discriminator)?;
+            let latents = config.ase.as_ref().map(|ase| ase.rewards().latents);
+            let latents = latents.unwrap_or_default();
+            network(amp, 2 * spec.style + latents.shown(), latents)
+                .map_err(ConfigError::Discriminator)?;
         }
         if !self.takes_motions && config.reads_for_bodies() {
             return Err(ConfigError::Settings(format!(
@@ -118,6 +122,12 @@ pub trait Task: Send + Sync {
         device: &Device,
     ) -> Result<Box<dyn Algorithm>> {
         ppo_learner(config, envs, device)
+    }
+
+    /// What moves a simulated body by a policy of this task: the policy itself, unless it steers something
+    /// else.
+    fn driver(&self, policy: &Policy) -> Box<dyn BodyDriver> {
+        Box::new(policy.clone())
     }
 
     /// Runs `episodes` fixed episodes to their end, the same ones for every policy.

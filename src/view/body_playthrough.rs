@@ -3,8 +3,9 @@
 use super::reference::Reference;
 use crate::container::Section;
 use crate::env::VecEnv;
+use crate::env::humanoid::driver::DriverState;
 use crate::env::humanoid::task::CpuHumanoidEnv;
-use crate::env::humanoid::task::play::PolicyStep;
+use crate::env::humanoid::task::play::DrivenStep;
 use crate::gpu::Array;
 use crate::kernels::humanoid::end_episode::LIMIT;
 use crate::kernels::termination;
@@ -93,6 +94,7 @@ pub struct BodyPlaythrough {
     pub wanted: Option<Vec<f32>>,
     observation: Vec<f32>,
     state: Section,
+    driver: DriverState,
 }
 
 impl BodyPlaythrough {
@@ -116,6 +118,7 @@ impl BodyPlaythrough {
             wanted: None,
             observation: vec![0.0; context.env.spec().observation.dim()],
             state: Section::default(),
+            driver: DriverState::default(),
         };
         first.take(&mut context.env)?;
         first.follow(context);
@@ -138,8 +141,9 @@ impl BodyPlaythrough {
         if let Some(push) = push {
             env.batch.worlds[0].external_forces[push.body].linear += push.force;
         }
-        let mut step = PolicyStep::new(env);
-        step.play(env, &|observation| policy.policy.mean(observation));
+        let mut step = DrivenStep::new(env);
+        let mut driver = self.driver.clone();
+        step.play(env, &*policy.driver, &mut driver);
         if step.ends.host()[0] != termination::RUNNING {
             return BodyPlaythrough::new(context, self.episode + 1);
         }
@@ -148,13 +152,14 @@ impl BodyPlaythrough {
             reward: step.reward.host()[0],
             touching: touching(env),
             push,
+            driver,
             ..self.clone()
         };
         next.take(env)?;
         let style = env.spec().style;
         let moments = [&self.observation[..style], &next.observation[..style]];
         let discriminator = policy.discriminator.as_ref();
-        next.style = discriminator.map(|discriminator| discriminator.reward(moments));
+        next.style = discriminator.map(|discriminator| discriminator.reward(moments, &next.driver.latents));
         next.follow(context);
         Ok(next)
     }

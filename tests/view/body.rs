@@ -46,7 +46,7 @@ fn untrained(config: &Config, task: &dyn Task) -> BodyPolicy {
         steps: 0,
     };
     let checkpoint = Checkpoint::take(header, &*learner, &envs, &TrainerState::default()).unwrap();
-    BodyPolicy::new(checkpoint, config).unwrap()
+    BodyPolicy::new(checkpoint, config, task).unwrap()
 }
 
 fn open(name: &str) -> Harness<'static, BodyViewer> {

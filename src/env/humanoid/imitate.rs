@@ -3,9 +3,10 @@
 //! [`ImitateTask`] begins episodes in recorded moments; [`evaluate`] compares what a policy does with the
 //! recordings.
 
+use super::driver::{BodyDriver, DriverState};
 use super::fidelity::{FidelityProbe, FidelityReport};
 use super::recorded::{mean_action, start_states};
-use super::task::play::{MeanPolicy, play_episodes};
+use super::task::play::play_episodes;
 use super::task::{COMMON_STATS, CpuHumanoidEnv, EpisodeRules, GpuHumanoidTask, HumanoidTask};
 use crate::gpu::Gpu;
 use crate::physics::model::Model;
@@ -63,14 +64,14 @@ impl GpuHumanoidTask for GpuImitate {}
 /// Plays `episodes` episodes, whose starts depend on `seed` alone.
 pub fn evaluate(
     task: Arc<ImitateTask>,
-    policy: &MeanPolicy,
+    driver: &dyn BodyDriver,
     episodes: usize,
     seed: u32,
 ) -> FidelityReport {
     let library = task.library.clone();
     let mut envs = CpuHumanoidEnv::unstaggered(task, 0..episodes, seed);
     let mut probe = FidelityProbe::new(&library, &envs);
-    let found = play_episodes(&mut envs, policy, |envs, running| {
+    let found = play_episodes(&mut envs, driver, DriverState::default(), |envs, running, _| {
         probe.observe(envs, running);
     });
     probe.report(&found)

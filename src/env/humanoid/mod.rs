@@ -2,15 +2,17 @@
 //! upright, [`imitate`] to move as recordings do, [`track`] to follow them moment
 //! by moment, [`punch`] to go up to a box and topple it.
 //!
-//! [`action`] says what an action means, [`starts`] where episodes begin, [`recorded`] what recordings are to
-//! a task, and [`fidelity`] how motion compares with them.
+//! [`action`] says what an action means, [`driver`] who acts, [`starts`] where episodes begin, [`recorded`] what
+//! recordings are to a task, and [`fidelity`] how motion compares with them.
 
 pub mod action;
 pub mod batch;
+pub mod driver;
 pub mod fidelity;
 pub mod imitate;
 pub mod punch;
 pub mod recorded;
+pub mod skills;
 pub mod stand;
 pub mod starts;
 pub mod task;

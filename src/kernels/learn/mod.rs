@@ -1,13 +1,16 @@
 //! Learning: [`sample_action`] draws actions, [`gae`] computes advantages, [`normalize_advantages`] makes them alike. A discriminator sees
-//! [`style_windows`], and gives the [`style_reward`]; [`discriminator_loss`] is its objective. The gradient of narrow dense
+//! [`style_windows`], and gives the [`style_reward`]; [`discriminator_loss`] is its objective. Skills: [`advance_latents`], [`encoder_loss`], [`skill_reward`], [`diversity_loss`]. The gradient of narrow dense
 //! networks, in order: [`forward`], an objective such as [`ppo_loss`], [`backward`], [`mod@gradient`],
 //! [`reduce_grads`]; [`network`] defines their memory layout. A step against any gradient: [`adapt_lr`],
 //! [`grad_norm`], [`adam`].
 
 pub mod adam;
 pub mod adapt_lr;
+pub mod advance_latents;
 pub mod backward;
 pub mod discriminator_loss;
+pub mod diversity_loss;
+pub mod encoder_loss;
 pub mod forward;
 pub mod gae;
 pub mod gather_samples;
@@ -19,5 +22,6 @@ pub mod ppo_loss;
 pub mod reduce_grads;
 pub mod rollout_moments;
 pub mod sample_action;
+pub mod skill_reward;
 pub mod style_reward;
 pub mod style_windows;

@@ -2,17 +2,20 @@
 //! of the agents, who are rewarded for being taken for recordings.
 //!
 //! [`Amp`] holds what may be chosen, [`discriminator`] learns and rewards, [`learner`] is PPO with both; a
-//! [`frozen_discriminator`] is what is left when learning is over.
+//! [`frozen_discriminator`] is what is left when learning is over. [`LatentUse`] is what a discriminator makes of
+//! the latents of [skills](super::ase).
 
 mod adaptive_steps;
 pub mod discriminator;
 pub mod frozen_discriminator;
+pub mod latent_use;
 pub mod learner;
 mod loss;
 mod replay;
 
 pub use discriminator::Discriminator;
 pub use frozen_discriminator::FrozenDiscriminator;
+pub use latent_use::{LatentUse, SkillRewards};
 pub use learner::AmpLearner;
 use serde::{Deserialize, Serialize};
 

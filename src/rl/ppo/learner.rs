@@ -2,13 +2,13 @@
 
 use super::Ppo;
 use super::batch::Batch;
-use super::loss::{LossCoefficients, PpoLoss, SUMS};
+use super::loss::{Diversity, LossCoefficients, PpoLoss, SUMS};
 use crate::container::{Section, SectionError};
 use crate::env::{EnvBatch, EnvSpec, Stats, VecEnv};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::rollout_moments::scale;
 use crate::kernels::learn::{adapt_lr, sample_action};
-use crate::kernels::rng::permutation;
+use crate::kernels::rng::{index_below, permutation, random4};
 use crate::nn::{ActorCritic, Adam, Engine, Network, Policy, RunningMeanStd, rows};
 use crate::rl::gae::{Bootstrap, RewardSource, gae};
 use crate::rl::rollout::Rollout;
@@ -23,6 +23,8 @@ use std::time::Instant;
 
 /// First random stream of the shuffles.
 const SHUFFLE: u32 = 0x5348_5546;
+/// Random stream of the pairs of latents.
+const OTHER_LATENT: u32 = 0x4f54_4845;
 /// Factor by which learning rate and KL penalty are adapted.
 const LR_FACTOR: f64 = 1.5;
 /// Range of an adapted learning rate.
@@ -51,6 +53,7 @@ pub struct PpoLearner {
     observation_normalizer: Option<RunningMeanStd>,
     /// Where the streams of rewards come from.
     sources: Vec<RewardSource>,
+    diversity: Diversity,
     /// What decides on their weights, if the style is one of them.
     task_weight: Option<TaskWeight>,
     /// Rollouts of the present iteration, one for each part of the environments.
@@ -127,6 +130,7 @@ impl PpoLearner {
                 .contains(&RewardSource::Style)
                 .then(TaskWeight::fixed),
             sources,
+            diversity: Diversity::default(),
             rollouts: Vec::new(),
             gradient: Array::zeroed(device, parameters),
             sums: Array::zeroed(device, SUMS),
@@ -141,6 +145,11 @@ impl PpoLearner {
             networks,
             engine,
         })
+    }
+
+    /// The same learner, whose latents are to lead to different actions.
+    pub fn with_diversity(self, diversity: Diversity) -> Self {
+        PpoLearner { diversity, ..self }
     }
 
     /// The same learner whose rewards of task and style, if it has both, are weighed so.
@@ -322,7 +331,8 @@ impl PpoLearner {
         let mut rollouts = std::mem::take(&mut self.rollouts);
         self.value_normalizer.normalize_advantages(&mut rollouts);
         let device = self.device.clone();
-        let mut batch = Batch::new(&device, &rollouts, self.value_normalizer.scale().clone());
+        let scale = self.value_normalizer.scale().clone();
+        let mut batch = Batch::new(&device, &rollouts, scale, self.under_other_latents(&rollouts));
         let samples = batch.samples();
         for epoch in 0..self.config.epochs {
             let stream = SHUFFLE + epoch as u32;
@@ -337,6 +347,43 @@ impl PpoLearner {
         self.rollouts = rollouts;
     }
 
+    /// The mean action of every sample of rollouts under the latent of another, and that latent,
+    /// `[samples][action + latent]`, if latents are to lead to different actions.
+    fn under_other_latents(&self, rollouts: &[Rollout]) -> Option<Array> {
+        let width = self.diversity.width(self.spec.action);
+        if width == 0 {
+            return None;
+        }
+        let parts: Vec<Array> = rollouts
+            .iter()
+            .map(|rollout| self.under_another(rollout))
+            .collect();
+        Some(rows::join(
+            &self.device,
+            &parts.iter().collect::<Vec<_>>(),
+        ))
+    }
+
+    fn under_another(&self, rollout: &Rollout) -> Array {
+        let (device, latent) = (&self.device, self.diversity.latent);
+        let (width, samples) = (self.spec.observation.dim(), rollout.samples());
+        let body = width - latent;
+        // Another environment's: its latent is as likely as any.
+        let most = rollout.spec.rows().max(2) as u32 - 1;
+        let [bits, ..] = random4(self.seed, 0, self.updates as u32, OTHER_LATENT);
+        let shift = 1 + index_below(bits, most) as usize;
+        let numbers: Vec<u32> = (0..samples)
+            .map(|at| ((at + shift) % samples) as u32)
+            .collect();
+        let columns = |range| rows::columns(device, &rollout.observation, width, range);
+        let other = rows::pick(device, &columns(body..width), latent, &numbers);
+        let seen = rows::beside(device, &[(&columns(0..body), body), (&other, latent)]);
+        let mut mean = Array::zeroed(device, samples * self.spec.action);
+        self.engine
+            .forward(ACTOR, &self.parameters, &seen, 0, samples, &mut mean, 0);
+        rows::beside(device, &[(&mean, self.spec.action), (&other, latent)])
+    }
+
     /// One gradient step on a minibatch.
     fn step(&mut self, batch: &Batch, samples: Range<usize>) {
         let objective = PpoLoss {
@@ -344,6 +391,8 @@ impl PpoLearner {
             values: self.sources.len(),
             log_std: self.networks.log_std(),
             old_log_std: &self.log_std,
+            observation: self.spec.observation.dim(),
+            diversity: self.diversity,
             coefficients: LossCoefficients {
                 inv_count: 1.0 / samples.len() as f32,
                 ..LossCoefficients::new(&self.config, self.kl_coefficient)

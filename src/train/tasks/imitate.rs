@@ -4,9 +4,9 @@ use super::motion_training::{MotionTask, load};
 use super::motions::Performance;
 use super::presets::{discriminator, styled};
 use crate::env::EnvSpec;
+use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::fidelity::FidelityReport;
 use crate::env::humanoid::imitate::{ImitateTask, evaluate};
-use crate::env::humanoid::task::play::MeanPolicy;
 use crate::env::humanoid::task::{EpisodeRules, spec};
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
@@ -31,6 +31,7 @@ fn preset(preset: Preset) -> TaskPreset {
         settings: table(&EpisodeRules::default()),
         ppo: styled(preset),
         amp: Some(discriminator(preset)),
+        ase: None,
         steps: 2_500_000,
     }
 }
@@ -78,11 +79,11 @@ impl MotionTask for Imitate {
     fn evaluate(
         task: Arc<ImitateTask>,
         _library: &MotionLibrary,
-        policy: &MeanPolicy,
+        driver: &dyn BodyDriver,
         episodes: usize,
         seed: u32,
     ) -> FidelityReport {
-        evaluate(task, policy, episodes, seed)
+        evaluate(task, driver, episodes, seed)
     }
 
     fn evaluation(found: &FidelityReport) -> Evaluation {

@@ -7,6 +7,7 @@ pub mod obstacles;
 pub mod plane;
 mod presets;
 pub mod punch;
+pub mod skills;
 pub mod stand;
 pub mod track;
 
@@ -15,7 +16,7 @@ use super::run_dir::RunDir;
 use super::task::TaskEntry;
 
 /// Every task there is.
-pub static REGISTRY: [TaskEntry; 7] = [
+pub static REGISTRY: [TaskEntry; 8] = [
     plane::ENTRY,
     obstacles::ENTRY,
     stand::ENTRY,
@@ -23,6 +24,7 @@ pub static REGISTRY: [TaskEntry; 7] = [
     track::ENTRY,
     punch::PUNCH,
     punch::JOYSTICK,
+    skills::ENTRY,
 ];
 
 /// A task by name.

@@ -3,13 +3,15 @@
 
 use super::motions;
 use crate::env::EnvBatch;
-use crate::env::humanoid::task::play::MeanPolicy;
+use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::task::{HumanoidTask, open};
 use crate::gpu::Device;
 use crate::nn::Policy;
 use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
 use crate::rl::Algorithm;
+use crate::rl::amp::SkillRewards;
+use crate::rl::ase::{LatentDraw, LatentDriver, LatentEnv};
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
@@ -47,11 +49,21 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
         self.played(library, seed)
     }
 
+    /// The latents under which agents move, if there are any.
+    fn latents(&self, _library: &MotionLibrary) -> Option<LatentDraw> {
+        None
+    }
+
+    /// What makes them move differently under different latents.
+    fn skill_rewards(&self) -> SkillRewards {
+        SkillRewards::default()
+    }
+
     /// Plays `episodes` episodes, whose starts depend on `seed` alone.
     fn evaluate(
         task: Arc<Self::Played>,
         library: &MotionLibrary,
-        policy: &MeanPolicy,
+        driver: &dyn BodyDriver,
         episodes: usize,
         seed: u32,
     ) -> Self::Report;
@@ -88,9 +100,9 @@ pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
 
 impl<T: MotionTask> MotionTraining<T> {
     fn rate(&self, policy: &Policy, episodes: usize) -> T::Report {
-        let mean = |observation: &[f32]| policy.mean(observation);
         let task = self.task.judged(&self.library, EPISODES_SEED);
-        T::evaluate(task, &self.library, &mean, episodes, EPISODES_SEED)
+        let driver = self.driver(policy);
+        T::evaluate(task, &self.library, &*driver, episodes, EPISODES_SEED)
     }
 }
 
@@ -116,8 +128,14 @@ impl<T: MotionTask> Task for MotionTraining<T> {
 
     fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
         let task = self.task.played(&self.library, seed);
+        let latents = self.task.latents(&self.library);
         EnvBatch::open(device, envs, None, |part| {
-            open(device, task.clone(), part, seed)
+            let first = part.start;
+            let envs = open(device, task.clone(), part, seed)?;
+            Ok(match &latents {
+                None => envs,
+                Some(draw) => Box::new(LatentEnv::new(envs, draw, device, first, seed)),
+            })
         })
     }
 
@@ -128,8 +146,22 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         device: &Device,
     ) -> Result<Box<dyn Algorithm>> {
         match &config.amp {
-            Some(amp) => motions::learner(config, amp, &self.library, envs, device),
+            Some(amp) => {
+                let (skills, latents) = (
+                    self.task.skill_rewards(),
+                    self.task.latents(&self.library),
+                );
+                let latents = latents.as_ref();
+                motions::learner(config, amp, &skills, latents, &self.library, envs, device)
+            }
             None => ppo_learner(config, envs, device),
+        }
+    }
+
+    fn driver(&self, policy: &Policy) -> Box<dyn BodyDriver> {
+        match self.task.latents(&self.library) {
+            None => Box::new(policy.clone()),
+            Some(draw) => Box::new(LatentDriver::new(policy, &draw, EPISODES_SEED)),
         }
     }
 

@@ -10,7 +10,8 @@ use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::motion_list::{ClipReport, MotionList, MotionListOptions};
 use crate::rl::Algorithm;
-use crate::rl::amp::{Amp, AmpLearner};
+use crate::rl::amp::{Amp, AmpLearner, SkillRewards};
+use crate::rl::ase::LatentDraw;
 use crate::rl::task_weight::TaskWeight;
 use crate::train::config::Config;
 use crate::train::data::SYNTHETIC_SEED;
@@ -96,20 +97,24 @@ fn line(clip: &ClipReport) -> String {
     )
 }
 
-/// PPO with a discriminator of the library's motion.
+/// PPO with a discriminator of the library's motion, which is shown the `latents` of clips where it is to.
 ///
 /// # Errors
 /// A network does not fit the observations, or the device.
 pub fn learner(
     config: &Config,
     amp: &Amp,
+    skills: &SkillRewards,
+    latents: Option<&LatentDraw>,
     library: &MotionLibrary,
     envs: &EnvBatch,
     device: &Device,
 ) -> Result<Box<dyn Algorithm>> {
     let (ppo, seed) = (&config.ppo, config.seed);
-    let demonstrations = Arc::new(demonstrations(library));
-    let learner = AmpLearner::new(ppo, amp, &demonstrations, envs, device, seed)?;
+    let latents = latents.filter(|_| skills.latents.shown() > 0);
+    let clips: Vec<&[f32]> = latents.iter().flat_map(|draw| draw.clips()).collect();
+    let demonstrations = Arc::new(demonstrations(library, &clips));
+    let learner = AmpLearner::new(ppo, amp, skills, &demonstrations, envs, device, seed)?;
     let weight = TaskWeight::new(&config.task_weight, amp.lambda());
     Ok(Box::new(learner.with_task_weight(weight)))
 }

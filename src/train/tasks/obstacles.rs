@@ -36,6 +36,7 @@ fn preset(preset: Preset) -> TaskPreset {
         settings: with_weights(&task, Weights::PAPER),
         ppo,
         amp: None,
+        ase: None,
         steps: 6_000_000,
     }
 }

@@ -37,6 +37,7 @@ fn preset(preset: Preset) -> TaskPreset {
             Preset::Paper => paper(),
         },
         amp: None,
+        ase: None,
         steps: 1_000_000,
     }
 }

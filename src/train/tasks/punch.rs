@@ -6,9 +6,9 @@ use super::motion_training::{MotionTask, load};
 use super::motions::Performance;
 use super::presets::{discriminator, styled};
 use crate::env::EnvSpec;
+use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::punch::evaluate::{PunchReport, evaluate};
 use crate::env::humanoid::punch::{FarReward, Punch, PunchTask};
-use crate::env::humanoid::task::play::MeanPolicy;
 use crate::env::humanoid::task::spec;
 use crate::kernels::humanoid::punch_observe;
 use crate::physics::motion_library::MotionLibrary;
@@ -101,6 +101,7 @@ fn preset(chosen: Preset, punch: Punch) -> TaskPreset {
             task_weight: 0.5,
             ..discriminator(chosen)
         }),
+        ase: None,
         steps: 10_000_000,
     }
 }
@@ -147,11 +148,11 @@ impl MotionTask for TargetTask {
     fn evaluate(
         task: Arc<PunchTask>,
         library: &MotionLibrary,
-        policy: &MeanPolicy,
+        driver: &dyn BodyDriver,
         episodes: usize,
         seed: u32,
     ) -> PunchReport {
-        evaluate(task, library, policy, episodes, seed)
+        evaluate(task, library, driver, episodes, seed)
     }
 
     fn evaluation(found: &PunchReport) -> Evaluation {

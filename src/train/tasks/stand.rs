@@ -57,6 +57,7 @@ fn preset(_: Preset) -> TaskPreset {
             ..fast()
         },
         amp: None,
+        ase: None,
         steps: 2_300_000,
     }
 }
@@ -90,8 +91,7 @@ impl StandTraining {
     }
 
     fn rate(&self, policy: &Policy, episodes: usize) -> StandReport {
-        let mean = |observation: &[f32]| policy.mean(observation);
-        evaluate(&self.stand, &mean, episodes, EPISODES_SEED)
+        evaluate(&self.stand, policy, episodes, EPISODES_SEED)
     }
 }
 

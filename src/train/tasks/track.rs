@@ -5,7 +5,7 @@ use super::motion_training::{MotionTask, load};
 use super::motions::Performance;
 use super::presets::styled;
 use crate::env::EnvSpec;
-use crate::env::humanoid::task::play::MeanPolicy;
+use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::task::spec;
 use crate::env::humanoid::track::{TrackReport, TrackTask, Tracking, evaluate};
 use crate::kernels::humanoid::track_observe;
@@ -32,6 +32,7 @@ fn preset(preset: Preset) -> TaskPreset {
         settings: table(&Tracking::default()),
         ppo: styled(preset),
         amp: None,
+        ase: None,
         steps: 2_500_000,
     }
 }
@@ -64,11 +65,11 @@ impl MotionTask for Tracking {
     fn evaluate(
         task: Arc<TrackTask>,
         _library: &MotionLibrary,
-        policy: &MeanPolicy,
+        driver: &dyn BodyDriver,
         episodes: usize,
         seed: u32,
     ) -> TrackReport {
-        evaluate(task, policy, episodes, seed)
+        evaluate(task, driver, episodes, seed)
     }
 
     fn evaluation(found: &TrackReport) -> Evaluation {

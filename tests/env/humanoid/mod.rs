@@ -1,3 +1,4 @@
+mod latents;
 mod mirrored;
 mod stand;
 mod style;

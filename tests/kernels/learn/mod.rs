@@ -14,3 +14,4 @@ mod ppo_loss;
 mod reduce_grads;
 mod rollout_moments;
 mod sample_action;
+mod skills;

@@ -37,6 +37,8 @@ pub struct FidelityReport {
     pub dtw_m: f64,
     /// Fraction of the clips that are nearest to at least 1 % of the stretches.
     pub coverage: f64,
+    /// Entropy of how often each clip is nearest, against that of all being as often so.
+    pub coverage_entropy: f64,
 }
 
 /// Watches the first episode of each environment.
@@ -85,7 +87,7 @@ impl<'a> FidelityProbe<'a> {
     pub fn report(&self, found: &Episodes) -> FidelityReport {
         let stretches = self.tracks.iter().flat_map(|track| track.parts(STRETCH));
         let nearest = self.nearest(&stretches.collect::<Vec<_>>());
-        let mut counts = vec![0; self.references.len()];
+        let mut counts = vec![0u32; self.references.len()];
         nearest.iter().for_each(|(clip, _)| counts[*clip] += 1);
         let enough = (COVERED * nearest.len() as f64).max(1.0);
         let covered = counts.iter().filter(|&&count| f64::from(count) >= enough);
@@ -99,7 +101,18 @@ impl<'a> FidelityProbe<'a> {
             speed_ratio: speed / mean_speed(self.library).max(1e-6),
             dtw_m: distance / nearest.len().max(1) as f64,
             coverage: covered.count() as f64 / counts.len().max(1) as f64,
+            coverage_entropy: entropy(&counts) / (counts.len().max(2) as f64).ln(),
         }
+    }
+
+    /// The nearest clip of every stretch of a second, of each environment whose poses are compared.
+    pub fn nearest_clips(&self) -> Vec<Vec<usize>> {
+        let stretches = self.tracks.iter().map(|track| {
+            let stretches: Vec<PoseTrack> = track.parts(STRETCH).collect();
+            let nearest = self.nearest(&stretches);
+            nearest.into_iter().map(|(clip, _)| clip).collect()
+        });
+        stretches.collect()
     }
 
     /// Fraction of poses whose nearest clip is of a kind; `None` without poses, or clips of that kind.
@@ -124,6 +137,14 @@ impl<'a> FidelityProbe<'a> {
         };
         parts.par_iter().map(nearest).collect()
     }
+}
+
+/// The entropy of frequencies, nats.
+fn entropy(counts: &[u32]) -> f64 {
+    let total = f64::from(counts.iter().sum::<u32>().max(1));
+    let shares = counts.iter().map(|&count| f64::from(count) / total);
+    let terms = shares.filter(|&share| share > 0.0);
+    -terms.map(|share| share * share.ln()).sum::<f64>()
 }
 
 fn root_of(world: &SimulatedWorld) -> [f32; 2] {

@@ -2,8 +2,9 @@
 
 use super::PunchTask;
 use super::steering::{SteeringProbe, SteeringReport};
+use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::env::humanoid::fidelity::{FidelityProbe, FidelityReport, PoseTrack};
-use crate::env::humanoid::task::play::{Episodes, MeanPolicy, play_episodes};
+use crate::env::humanoid::task::play::{Episodes, play_episodes};
 use crate::env::humanoid::task::{CpuHumanoidEnv, DT};
 use crate::physics::motion_library::MotionLibrary;
 use serde::Serialize;
@@ -42,7 +43,7 @@ pub struct PunchReport {
 pub fn evaluate(
     task: Arc<PunchTask>,
     library: &MotionLibrary,
-    policy: &MeanPolicy,
+    driver: &dyn BodyDriver,
     episodes: usize,
     seed: u32,
 ) -> PunchReport {
@@ -50,7 +51,7 @@ pub fn evaluate(
     let mut probe = FidelityProbe::new(library, &envs);
     let mut steering = SteeringProbe::new(&task, episodes);
     let mut near = PoseTrack::default();
-    let found = play_episodes(&mut envs, policy, |envs, running| {
+    let found = play_episodes(&mut envs, driver, DriverState::default(), |envs, running, _| {
         probe.observe(envs, running);
         steering.observe(envs, running);
         let worlds = envs.batch.worlds.iter().zip(&envs.task_states);

@@ -1,33 +1,32 @@
-//! Whole episodes on the CPU, played by a policy's mean.
+//! Whole episodes on the CPU, under a driver.
 
 use super::cpu::CpuHumanoidEnv;
 use super::rules::RATE;
+use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::Array;
 use crate::kernels::termination;
 use crate::physics::motion_clip::MotionClip;
 
-/// A policy's mean: actions `[rows][action]` of observations `[rows][observation]`.
-pub type MeanPolicy<'a> = dyn Fn(&[f32]) -> Vec<f32> + 'a;
-
-/// Steps environments one episode long. `after` is shown every step, with how it ended for each, and says
-/// whether to go on.
+/// Steps environments one episode long, under a driver in some `state`. `after` is shown every step, with how it
+/// ended for each and what the driver remembers, and says whether to go on.
 pub fn play(
     envs: &mut CpuHumanoidEnv,
-    policy: &MeanPolicy,
-    mut after: impl FnMut(&CpuHumanoidEnv, &[u32]) -> bool,
+    driver: &dyn BodyDriver,
+    mut state: DriverState,
+    mut after: impl FnMut(&CpuHumanoidEnv, &[u32], &mut DriverState) -> bool,
 ) {
-    let mut step = PolicyStep::new(envs);
+    let mut step = DrivenStep::new(envs);
     for _ in 0..envs.task().rules().steps() {
-        step.play(envs, policy);
-        if !after(envs, step.ends.host()) {
+        step.play(envs, driver, &mut state);
+        if !after(envs, step.ends.host(), &mut state) {
             return;
         }
     }
 }
 
-/// A step of environments by a policy's mean.
-pub struct PolicyStep {
+/// A step of environments under a driver.
+pub struct DrivenStep {
     /// What was observed before it, `[rows][observation]`.
     pub observation: Array,
     /// `[rows]`
@@ -38,11 +37,11 @@ pub struct PolicyStep {
     last: Array,
 }
 
-impl PolicyStep {
+impl DrivenStep {
     /// Before the first step.
-    pub fn new(envs: &CpuHumanoidEnv) -> PolicyStep {
+    pub fn new(envs: &CpuHumanoidEnv) -> DrivenStep {
         let (count, dim) = (envs.spec().rows(), envs.spec().observation.dim());
-        PolicyStep {
+        DrivenStep {
             observation: Array::Host(vec![0.0; count * dim]),
             reward: Array::Host(vec![0.0; count]),
             ends: Array::Host(vec![termination::RUNNING; count]),
@@ -51,10 +50,15 @@ impl PolicyStep {
         }
     }
 
-    /// Plays the next step.
-    pub fn play(&mut self, envs: &mut CpuHumanoidEnv, policy: &MeanPolicy) {
+    /// Plays the next step; `state` is the driver's.
+    pub fn play(
+        &mut self,
+        envs: &mut CpuHumanoidEnv,
+        driver: &dyn BodyDriver,
+        state: &mut DriverState,
+    ) {
         envs.observe(&mut self.observation, 0);
-        let action = Array::Host(policy(self.observation.host()));
+        let action = Array::Host(driver.act(self.observation.host(), state));
         let out = Transition {
             step: 0,
             reward: &mut self.reward,
@@ -74,12 +78,13 @@ pub struct Episodes {
     pub sums: Vec<Vec<f32>>,
 }
 
-/// Plays one episode of each environment to its end. `after` is shown every step, with those still in
-/// their first episode.
+/// Plays one episode of each environment to its end, under a driver in some `state`. `after` is shown every step,
+/// with those still in their first episode and what the driver remembers.
 pub fn play_episodes(
     envs: &mut CpuHumanoidEnv,
-    policy: &MeanPolicy,
-    mut after: impl FnMut(&CpuHumanoidEnv, &[bool]),
+    driver: &dyn BodyDriver,
+    state: DriverState,
+    mut after: impl FnMut(&CpuHumanoidEnv, &[bool], &mut DriverState),
 ) -> Episodes {
     let count = envs.spec().envs;
     let mut found = Episodes {
@@ -87,7 +92,7 @@ pub fn play_episodes(
         sums: vec![Vec::new(); count],
     };
     let mut running = vec![true; count];
-    play(envs, policy, |envs, ends| {
+    play(envs, driver, state, |envs, ends, state| {
         for (env, &end) in ends.iter().enumerate() {
             if running[env] && end != termination::RUNNING {
                 let stats = envs.stat_names().len();
@@ -97,7 +102,7 @@ pub fn play_episodes(
                 found.sums[env] = episode[episode.len() - stats..].to_vec();
             }
         }
-        after(envs, &running);
+        after(envs, &running, state);
         running.contains(&true)
     });
     found
@@ -118,9 +123,9 @@ impl Episodes {
 }
 
 /// The motion of one episode of the first environment, up to its end.
-pub fn record(envs: &mut CpuHumanoidEnv, policy: &MeanPolicy, name: &str) -> MotionClip {
+pub fn record(envs: &mut CpuHumanoidEnv, driver: &dyn BodyDriver, name: &str) -> MotionClip {
     let mut q = envs.batch.worlds[0].state.q.clone();
-    play(envs, policy, |envs, ends| {
+    play(envs, driver, DriverState::default(), |envs, ends, _| {
         let running = ends[0] == termination::RUNNING;
         if running {
             q.extend(&envs.batch.worlds[0].state.q);

@@ -5,9 +5,10 @@
 mod references;
 
 use super::batch::SimulatedWorld;
+use super::driver::{BodyDriver, DriverState};
 use super::fidelity::{FidelityProbe, FidelityReport};
 use super::recorded::mean_action;
-use super::task::play::{MeanPolicy, play_episodes};
+use super::task::play::play_episodes;
 use super::task::{
     CpuHumanoidEnv, EpisodeRules, GpuHumanoidTask, HumanoidTask, KEY_BODIES, StepContext,
     StepOutcome, TaskBuffers, check_range,
@@ -301,14 +302,14 @@ impl GpuHumanoidTask for GpuTrack {
 /// Plays `episodes` episodes, whose starts depend on `seed` alone.
 pub fn evaluate(
     task: Arc<TrackTask>,
-    policy: &MeanPolicy,
+    driver: &dyn BodyDriver,
     episodes: usize,
     seed: u32,
 ) -> TrackReport {
     let library = task.library.clone();
     let mut envs = CpuHumanoidEnv::unstaggered(task, 0..episodes, seed);
     let mut probe = FidelityProbe::new(&library, &envs);
-    let found = play_episodes(&mut envs, policy, |envs, running| {
+    let found = play_episodes(&mut envs, driver, DriverState::default(), |envs, running, _| {
         probe.observe(envs, running);
     });
     // In the order of the statistics.
