@@ -438,7 +438,7 @@ impl Config {
 }
 
 /// Keys that decide over what is learned.
-const DECISIVE: [&str; 5] = ["seed", "task", "ppo", "amp", "task_weight"];
+const DECISIVE: [&str; 6] = ["seed", "task", "ppo", "amp", "ase", "task_weight"];
 
 /// Bytes of the longest configuration.
 const MAX_BYTES: u64 = 1 << 24;
