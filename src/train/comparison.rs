@@ -3,6 +3,7 @@
 use super::checkpoint::Checkpoint;
 use super::config::Config;
 use super::evaluation::Evaluation;
+use super::fingerprint::Fingerprint;
 use super::metrics::{self, UpdateMetrics};
 use super::observer::Observer;
 use super::run_dir::RunDir;
@@ -145,7 +146,7 @@ impl Comparison<'_> {
         config: &Config,
         run: &RunDir,
         spec: &EnvSpec,
-        fingerprint: u32,
+        fingerprint: Fingerprint,
     ) -> Result<Option<Checkpoint>> {
         let found = Config {
             steps: config.steps,

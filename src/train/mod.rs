@@ -15,7 +15,9 @@ pub mod evaluate;
 pub mod evaluation;
 #[cfg(feature = "report")]
 pub mod figures;
+pub mod fingerprint;
 pub mod locomotion;
+pub mod low_level;
 pub mod memory;
 pub mod metrics;
 pub mod metrics_writer;

@@ -167,6 +167,7 @@ fn turning(learner: &AmpLearner, latent: usize) -> Vec<f32> {
         let out = Transition {
             step: 0,
             reward: &mut Array::Host(vec![0.0; ENVS]),
+            style_reward: &mut Array::Host(vec![0.0; ENVS]),
             termination: &mut Array::Host(vec![0; ENVS]),
             group: &mut Array::Host(vec![0; ENVS]),
             final_observation: &mut Array::Host(vec![0.0; 3 * ENVS]),

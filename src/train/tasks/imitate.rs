@@ -20,6 +20,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     name: "imitate",
     about: "Move a simulated body like recordings",
     preset,
+    steering: None,
     spec: check,
     takes_motions: true,
     load: |config| load::<Imitate>(config, scenes::humanoid()),

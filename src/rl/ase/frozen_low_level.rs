@@ -1,0 +1,97 @@
+//! A low-level policy that learns no more, on the host.
+
+use crate::container::Section;
+use crate::env::EnvSpec;
+use crate::nn::Policy;
+use crate::rl::amp::FrozenDiscriminator;
+
+/// A low-level policy with its discriminator, neither of which learns any more.
+pub struct FrozenLowLevel {
+    /// Observes the body, then a latent.
+    pub policy: Policy,
+    /// Tells what the policy was to move like.
+    pub discriminator: FrozenDiscriminator,
+    /// What its learner saved of the style reward, for another's [weight](crate::rl::task_weight::TaskWeight) of its
+    /// task.
+    pub task_weight: Section,
+    /// Numbers that a body observes of itself.
+    style: usize,
+}
+
+impl FrozenLowLevel {
+    /// The low level of bodies that observe `style` numbers of themselves.
+    ///
+    /// # Errors
+    /// The policy observes more or other things than such a body and a latent of two numbers at least.
+    pub fn new(
+        policy: Policy,
+        discriminator: FrozenDiscriminator,
+        task_weight: Section,
+        style: usize,
+    ) -> Result<FrozenLowLevel, String> {
+        let observation = policy.observation();
+        if observation.grid.is_some() || observation.vector < style + 2 {
+            let dim = observation.dim();
+            return Err(format!(
+                "it observes {dim} numbers, which are not {style} of a body and a latent"
+            ));
+        }
+        Ok(FrozenLowLevel {
+            policy,
+            discriminator,
+            task_weight,
+            style,
+        })
+    }
+
+    /// Numbers that a body observes of itself, then those of a latent.
+    pub fn widths(&self) -> [usize; 2] {
+        [self.style, self.latent()]
+    }
+
+    /// Numbers of a latent.
+    pub fn latent(&self) -> usize {
+        self.policy.observation().vector - self.style
+    }
+
+    /// The dimensions of environments of a body, as a policy sees them that acts through this one.
+    ///
+    /// # Errors
+    /// It is of another body.
+    pub fn steered(&self, body: &EnvSpec) -> Result<EnvSpec, String> {
+        let (style, action) = (self.style, self.policy.action());
+        if (style, action) != (body.style, body.action) || body.observation.grid.is_some() {
+            return Err(format!(
+                "it is of a body that observes {style} numbers of itself and has {action} drives, not of one with {} and {}",
+                body.style, body.action
+            ));
+        }
+        Ok(EnvSpec {
+            action: self.latent(),
+            dt: super::STEPS_PER_DECISION as f32 * body.dt,
+            ..*body
+        })
+    }
+
+    /// A checksum of all that decides what it does and rewards.
+    pub fn fingerprint(&self) -> u32 {
+        let mut hasher = crc32fast::Hasher::new();
+        let moments = self.policy.normalizer.as_ref();
+        let moments = moments.map_or(&[][..], |normalizer| normalizer.moments());
+        let [parameters, style_moments] = self.discriminator.learned();
+        for numbers in [&self.policy.parameters, moments, parameters, style_moments] {
+            hasher.update(bytemuck::cast_slice(numbers));
+        }
+        hasher.finalize()
+    }
+
+    /// Mean actions `[rows][action]` of bodies that observe `[rows][observation]`, under latents `[rows][latent]`.
+    pub fn act(&self, observation: &[f32], latents: &[f32]) -> Vec<f32> {
+        let [style, latent] = self.widths();
+        let latents = latents.chunks_exact(latent);
+        let width = observation.len() / latents.len().max(1);
+        let rows = observation.chunks_exact(width).zip(latents);
+        let input = rows.flat_map(|(row, latent)| row[..style].iter().chain(latent));
+        self.policy.mean(&input.copied().collect::<Vec<f32>>())
+    }
+}
