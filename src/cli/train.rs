@@ -87,7 +87,7 @@ pub struct Train {
 }
 
 /// What every kind of training may be asked for.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Choices {
     /// A folder of BVH files, one BVH file, or a database file; for simulated bodies also DeepMimic's
     /// recordings, or a motion list in TOML [default: synthetic motion]
@@ -108,7 +108,7 @@ pub struct Choices {
     /// Learn to steer the skills of a low level, for `punch` and `joystick`: a run of `skills`, or one of its
     /// checkpoints; with --resume, where it is now
     #[arg(long, value_name = "RUN")]
-    skills: Option<PathBuf>,
+    pub skills: Option<PathBuf>,
     /// Begin with what another run of a simulated body has learned: its folder, or one of its checkpoints
     #[arg(long, value_name = "RUN")]
     from: Option<PathBuf>,
