@@ -1,9 +1,8 @@
 //! The low level that a high-level policy steers: a run of the task `skills`.
 
-use super::checkpoint::{Checkpoint, Header};
+use super::checkpoint::Checkpoint;
 use super::config::{Config, ConfigError};
 use super::run_dir::checkpoint_of;
-use crate::container::Section;
 use crate::env::EnvSpec;
 use crate::rl::amp::{Amp, FrozenDiscriminator};
 use crate::rl::ase::{Ase, FrozenLowLevel};
@@ -36,21 +35,18 @@ pub fn load(run: &Path) -> Result<FrozenLowLevel> {
             header.task
         );
     }
-    let style = header.spec.style;
     let path = path.display();
-    let mut learner = checkpoint.sections.take("learner").unwrap_or_default();
-    let discriminator = discriminator(header, &mut learner)
-        .with_context(|| format!("the discriminator of {path} cannot be read"))?;
-    let task_weight = learner.take_section("task_weight");
-    let low_level = FrozenLowLevel::new(checkpoint.policy, discriminator, task_weight, style);
-    low_level.map_err(|why| anyhow!("{path} is no low level: {why}"))
-}
-
-fn discriminator(header: &Header, learner: &mut Section) -> Result<FrozenDiscriminator> {
     let config: Result<LowLevelConfig, _> = toml::from_str(&header.config);
-    let config = config.map_err(|error| anyhow!("its configuration: {}", error.message()))?;
-    let latents = config.ase.rewards().latents;
-    FrozenDiscriminator::load(&config.amp, latents, learner, header.spec.style)
+    let config =
+        config.map_err(|error| anyhow!("{path}: its configuration: {}", error.message()))?;
+    let (style, latents) = (header.spec.style, config.ase.rewards().latents);
+    let mut learner = checkpoint.sections.take("learner").unwrap_or_default();
+    let discriminator = FrozenDiscriminator::load(&config.amp, latents, &mut learner, style)
+        .with_context(|| format!("the discriminator of {path} cannot be read"))?;
+    let weight = learner.take_section("task_weight");
+    let widths = [style, config.ase.latent];
+    let low_level = FrozenLowLevel::new(checkpoint.policy, discriminator, weight, widths);
+    low_level.map_err(|why| anyhow!("{path} is no low level: {why}"))
 }
 
 /// The dimensions of a body's environments under a configuration: those of latents, where it names a low level.

@@ -14,44 +14,45 @@ pub struct FrozenLowLevel {
     /// What its learner saved of the style reward, for another's [weight](crate::rl::task_weight::TaskWeight) of its
     /// task.
     pub task_weight: Section,
-    /// Numbers that a body observes of itself.
-    style: usize,
+    /// Numbers that a body observes of itself, then those of a latent.
+    widths: [usize; 2],
 }
 
 impl FrozenLowLevel {
-    /// The low level of bodies that observe `style` numbers of themselves.
+    /// The low level of bodies that observe so many numbers of themselves, with latents of so many: the `widths`.
     ///
     /// # Errors
-    /// The policy observes more or other things than such a body and a latent of two numbers at least.
+    /// The policy observes other things.
     pub fn new(
         policy: Policy,
         discriminator: FrozenDiscriminator,
         task_weight: Section,
-        style: usize,
+        widths: [usize; 2],
     ) -> Result<FrozenLowLevel, String> {
-        let observation = policy.observation();
-        if observation.grid.is_some() || observation.vector < style + 2 {
+        let (observation, [style, latent]) = (policy.observation(), widths);
+        let wanted = style.checked_add(latent);
+        if observation.grid.is_some() || wanted != Some(observation.vector) || latent < 2 {
             let dim = observation.dim();
             return Err(format!(
-                "it observes {dim} numbers, which are not {style} of a body and a latent"
+                "it observes {dim} numbers, which are not {style} of a body and {latent} of a latent"
             ));
         }
         Ok(FrozenLowLevel {
             policy,
             discriminator,
             task_weight,
-            style,
+            widths,
         })
     }
 
     /// Numbers that a body observes of itself, then those of a latent.
     pub fn widths(&self) -> [usize; 2] {
-        [self.style, self.latent()]
+        self.widths
     }
 
     /// Numbers of a latent.
     pub fn latent(&self) -> usize {
-        self.policy.observation().vector - self.style
+        self.widths[1]
     }
 
     /// The dimensions of environments of a body, as a policy sees them that acts through this one.
@@ -59,7 +60,7 @@ impl FrozenLowLevel {
     /// # Errors
     /// It is of another body.
     pub fn steered(&self, body: &EnvSpec) -> Result<EnvSpec, String> {
-        let (style, action) = (self.style, self.policy.action());
+        let (style, action) = (self.widths[0], self.policy.action());
         if (style, action) != (body.style, body.action) || body.observation.grid.is_some() {
             return Err(format!(
                 "it is of a body that observes {style} numbers of itself and has {action} drives, not of one with {} and {}",
@@ -87,7 +88,7 @@ impl FrozenLowLevel {
 
     /// Mean actions `[rows][action]` of bodies that observe `[rows][observation]`, under latents `[rows][latent]`.
     pub fn act(&self, observation: &[f32], latents: &[f32]) -> Vec<f32> {
-        let [style, latent] = self.widths();
+        let [style, latent] = self.widths;
         let latents = latents.chunks_exact(latent);
         let width = observation.len() / latents.len().max(1);
         let rows = observation.chunks_exact(width).zip(latents);
