@@ -43,9 +43,8 @@ pub fn load(run: &Path) -> Result<FrozenLowLevel> {
     let mut learner = checkpoint.sections.take("learner").unwrap_or_default();
     let discriminator = FrozenDiscriminator::load(&config.amp, latents, &mut learner, style)
         .with_context(|| format!("the discriminator of {path} cannot be read"))?;
-    let weight = learner.take_section("task_weight");
     let widths = [style, config.ase.latent];
-    let low_level = FrozenLowLevel::new(checkpoint.policy, discriminator, weight, widths);
+    let low_level = FrozenLowLevel::new(checkpoint.policy, discriminator, widths);
     low_level.map_err(|why| anyhow!("{path} is no low level: {why}"))
 }
 

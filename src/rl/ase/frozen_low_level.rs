@@ -1,6 +1,5 @@
 //! A low-level policy that learns no more, on the host.
 
-use crate::container::Section;
 use crate::env::EnvSpec;
 use crate::nn::Policy;
 use crate::rl::amp::FrozenDiscriminator;
@@ -11,9 +10,6 @@ pub struct FrozenLowLevel {
     pub policy: Policy,
     /// Tells what the policy was to move like.
     pub discriminator: FrozenDiscriminator,
-    /// What its learner saved of the style reward, for another's [weight](crate::rl::task_weight::TaskWeight) of its
-    /// task.
-    pub task_weight: Section,
     /// Numbers that a body observes of itself, then those of a latent.
     widths: [usize; 2],
 }
@@ -26,7 +22,6 @@ impl FrozenLowLevel {
     pub fn new(
         policy: Policy,
         discriminator: FrozenDiscriminator,
-        task_weight: Section,
         widths: [usize; 2],
     ) -> Result<FrozenLowLevel, String> {
         let (observation, [style, latent]) = (policy.observation(), widths);
@@ -40,7 +35,6 @@ impl FrozenLowLevel {
         Ok(FrozenLowLevel {
             policy,
             discriminator,
-            task_weight,
             widths,
         })
     }

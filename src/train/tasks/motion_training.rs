@@ -167,7 +167,7 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         device: &Device,
     ) -> Result<Box<dyn Algorithm>> {
         match (&self.low_level, &config.amp) {
-            (Some(low_level), _) => motions::steering_learner(config, low_level, envs, device),
+            (Some(_), _) => motions::steering_learner(config, envs, device),
             (None, Some(amp)) => {
                 let (skills, latents) =
                     (self.task.skill_rewards(), self.task.latents(&self.library));

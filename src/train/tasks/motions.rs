@@ -11,7 +11,7 @@ use crate::physics::motion_library::MotionLibrary;
 use crate::physics::motion_list::{ClipReport, MotionList, MotionListOptions};
 use crate::rl::Algorithm;
 use crate::rl::amp::{Amp, AmpLearner, SkillRewards};
-use crate::rl::ase::{FrozenLowLevel, LatentDraw};
+use crate::rl::ase::LatentDraw;
 use crate::rl::gae::RewardSource;
 use crate::rl::ppo::PpoLearner;
 use crate::rl::task_weight::TaskWeight;
@@ -132,15 +132,15 @@ const STEERING_REWARDS: [(RewardSource, f32); 2] =
 /// A network does not fit the observations, or the device.
 pub fn steering_learner(
     config: &Config,
-    low_level: &FrozenLowLevel,
     envs: &EnvBatch,
     device: &Device,
 ) -> Result<Box<dyn Algorithm>> {
     let (ppo, seed) = (&config.ppo, config.seed);
     let learner = PpoLearner::with_rewards(ppo, envs, device, seed, &STEERING_REWARDS)?;
     let [task, style] = STEERING_REWARDS.map(|(_, weight)| f64::from(weight));
-    let mut weight = TaskWeight::new(&config.task_weight, task / style);
-    weight.start_from(&mut low_level.task_weight.clone())?;
+    // The low level's own reward was measured under the noise of its actions, and would be too easy to reach: the
+    // reference is found anew, from first decisions that are as good as random.
+    let weight = TaskWeight::new(&config.task_weight, task / style);
     Ok(Box::new(learner.with_task_weight(weight)))
 }
 
