@@ -59,8 +59,9 @@ pub struct Ase {
 
 impl Default for Ase {
     fn default() -> Self {
+        // What learned the clips of `examples/L17_B5.toml` within an hour on two cores.
         Ase {
-            low_level: LowLevel::Ase,
+            low_level: LowLevel::PerClip,
             latent: 16,
             kept_steps: [1, 150],
             skill_weight: 0.5,
