@@ -68,6 +68,13 @@ fn skills_are_steered_and_evaluated() {
         assert!(keys(&found).contains(&key), "no {key} in {found}");
     }
     place.done("render punch --out punch.png");
+    let small = SMALL.replace("--device cpu", "--device cpu --seeds 1");
+    place.done(&format!(
+        "compare punch --skills low {small} --steps 320 --out both"
+    ));
+    let table = place.read("both/comparison.txt");
+    assert!(table.contains("amp") && table.contains("ase"), "{table}");
+    assert!(place.path("both/comparison.png").exists());
 }
 
 #[test]
@@ -125,6 +132,7 @@ fn what_cannot_be_steered_is_refused() {
         ),
         ("train punch --set skills=low --out run", "--skills"),
         ("eval stand --episodes 4 --skills low", "leave out --skills"),
+        ("eval stand --episodes 4 --skills", "which has no skills"),
     ] {
         place.refused(words, 2, &[part]);
     }
