@@ -73,10 +73,7 @@ impl Compare {
         let interrupted = on_interrupt()?;
         let start = self.choices.start()?;
         let [mut amp, mut ase] = self.configurations(entry)?;
-        let [direct, steered] = [
-            Opened::new(entry, &mut amp)?,
-            Opened::new(entry, &mut ase)?,
-        ];
+        let [direct, steered] = [Opened::new(entry, &mut amp)?, Opened::new(entry, &mut ase)?];
         let out = format!("runs/compare-{}", entry.name).into();
         let out = self.out.unwrap_or(out);
         let mut progress = Progress::new(&amp);

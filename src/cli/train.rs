@@ -224,7 +224,10 @@ impl Train {
         match (&mut config.ase, self.low_level) {
             (Some(ase), Some(low_level)) => ase.low_level = low_level,
             (None, Some(_)) => {
-                let why = format!("--low-level is for `skills`: `{}` has no latents", entry.name);
+                let why = format!(
+                    "--low-level is for `skills`: `{}` has no latents",
+                    entry.name
+                );
                 return Err(Usage(why).into());
             }
             (_, None) => {}

@@ -165,7 +165,10 @@ fn power(model: &Model, world: &SimulatedWorld) -> f64 {
     let (q, v) = (&world.state.q, &world.state.v);
     let mut drives = vec![Effort::default(); model.nv()];
     efforts(model, q, v, &world.targets, 1.0 / STEP_RATE, &mut drives);
-    let limits = model.dofs.iter().map(|dof| dof.drive.map_or(0.0, |drive| drive.limit));
+    let limits = model
+        .dofs
+        .iter()
+        .map(|dof| dof.drive.map_or(0.0, |drive| drive.limit));
     let powers = drives.iter().zip(limits).zip(v);
     let powers = powers.map(|((drive, limit), speed)| drive.force.clamp(-limit, limit) * speed);
     powers.map(|power| f64::from(power.abs())).sum()
