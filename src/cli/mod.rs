@@ -1,10 +1,12 @@
-//! One file a subcommand.
+//! One file a subcommand, and what they share.
 
 mod ablate;
 #[cfg(feature = "report")]
 mod bench;
 mod data;
 mod eval;
+#[cfg(feature = "viewer")]
+mod latents;
 #[cfg(feature = "viewer")]
 mod play;
 mod progress;

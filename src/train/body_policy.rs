@@ -9,11 +9,12 @@ use crate::env::humanoid::task::CpuHumanoidEnv;
 use crate::env::humanoid::task::play::play_episodes;
 use crate::rl::amp::FrozenDiscriminator;
 use anyhow::{Context, Result};
+use std::sync::Arc;
 
 /// What a checkpoint's policy drives, with its discriminator if the run has one.
 pub struct BodyPolicy {
     /// Who acts.
-    pub driver: Box<dyn BodyDriver>,
+    pub driver: Arc<dyn BodyDriver>,
     /// The discriminator.
     pub discriminator: Option<FrozenDiscriminator>,
 }
@@ -44,7 +45,7 @@ impl BodyPolicy {
             }
         };
         Ok(BodyPolicy {
-            driver: task.driver(&checkpoint.policy),
+            driver: task.driver(&checkpoint.policy).into(),
             discriminator,
         })
     }

@@ -14,6 +14,7 @@ mod places;
 mod refused;
 mod render;
 mod sim;
+mod skills;
 mod stand;
 #[cfg(unix)]
 mod stopped;
