@@ -131,8 +131,7 @@ impl Canvas<'_> {
         for (number, pixel) in rgb.chunks_exact(3).enumerate() {
             let (x, y) = ((number % width) as f64, (number / width) as f64);
             let from = (corner.0 + x, corner.1 + y);
-            // The opposite corner is drawn, too.
-            let to = (from.0 + 0.5, from.1 + 0.5);
+            let to = (from.0 + 1.0, from.1 + 1.0);
             self.rectangle(from, to, RGBColor(pixel[0], pixel[1], pixel[2]))?;
         }
         Ok(())

@@ -14,8 +14,6 @@ use std::f32::consts::PI;
 const RANDOM: usize = COMPARED;
 /// Latents all over the disc besides.
 const SPREAD: usize = 2 * COMPARED;
-/// For so long a latent is held, s: it takes some time until a body does what it says.
-const HELD_S: f32 = 4.0;
 
 /// The sphere of latents, seen along all but its two main directions: a disc, every point of which is a latent.
 pub struct LatentMap {
@@ -30,10 +28,10 @@ pub struct LatentMap {
 pub struct MapPoint {
     /// A vector of length 1.
     pub latent: Vec<f32>,
-    /// The clip that it moves like, by its index in the legend; `None` if it falls at once.
+    /// The clip that it moves like, by its index in the legend; `None` if it falls.
     pub clip: Option<usize>,
-    /// Whether this is the latent of a clip.
-    pub of_clip: bool,
+    /// The clip whose latent it is, if it is one's.
+    pub own: Option<String>,
 }
 
 impl LatentMap {
@@ -47,37 +45,42 @@ impl LatentMap {
         let clips_of = |latents: &[Vec<f32>]| -> Vec<Option<usize>> {
             let batches = latents.chunks(COMPARED).flat_map(|latents| {
                 let mut envs = episodes.open_all(latents.len());
-                clips_under(&mut envs, library, driver, latents.concat(), HELD_S)
+                clips_under(&mut envs, library, driver, latents.concat())
             });
             batches.collect()
         };
-        let mut latents: Vec<Vec<f32>> = draw.clips().map(<[f32]>::to_vec).collect();
-        let own = latents.len();
-        if own == 0 {
-            latents = draw.any(RANDOM);
-        }
-        let mut clips = clips_of(&latents);
-        let axes = match own {
-            0 => principal_axes(&means(&latents, &clips)),
-            _ => principal_axes(&latents),
+        let own: Vec<Vec<f32>> = draw.clips().map(<[f32]>::to_vec).collect();
+        let first = if own.is_empty() {
+            draw.any(RANDOM)
+        } else {
+            own
+        };
+        let known = clips_of(&first);
+        let axes = match draw.clips().next() {
+            Some(_) => principal_axes(&first),
+            None => principal_axes(&means(&first, &known)),
         };
         let spread = spread(&axes, &draw.any(SPREAD));
-        clips.extend(clips_of(&spread));
-        latents.extend(spread);
+        let clips = [known, clips_of(&spread)].concat();
+        let names = library.motions().iter().map(|motion| &motion.name);
+        let names: Vec<&String> = names.collect();
+        let own = draw
+            .clips()
+            .enumerate()
+            .map(|(clip, _)| names[clip].clone());
+        let own = own.map(Some).chain(std::iter::repeat(None));
         let order = by_frequency(&clips);
-        let place = |clip: usize| order.iter().position(|&other| other == clip);
-        let points = latents.into_iter().zip(&clips).enumerate();
+        let entry = |clip: usize| order.iter().position(|&other| other == clip);
+        let latents = first.into_iter().chain(spread);
+        let points = latents.zip(clips).zip(own);
+        let points = points.map(|((latent, clip), own)| MapPoint {
+            latent,
+            clip: clip.and_then(entry),
+            own,
+        });
         LatentMap {
-            points: points
-                .map(|(index, (latent, clip))| MapPoint {
-                    latent,
-                    clip: clip.and_then(place),
-                    of_clip: index < own,
-                })
-                .collect(),
-            legend: (order.iter())
-                .map(|&clip| library.motions()[clip].name.clone())
-                .collect(),
+            points: points.collect(),
+            legend: order.iter().map(|&clip| names[clip].clone()).collect(),
             axes,
         }
     }
@@ -181,7 +184,7 @@ mod tests {
         let point = |latent: &Vec<f32>| MapPoint {
             latent: latent.clone(),
             clip: None,
-            of_clip: false,
+            own: None,
         };
         LatentMap {
             axes: principal_axes(&vectors),

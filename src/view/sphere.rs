@@ -14,10 +14,15 @@ pub fn combined([a, b]: [f32; 2], [one, other]: [&[f32]; 2]) -> Vec<f32> {
     pairs.map(|(one, other)| a * one + b * other).collect()
 }
 
-/// What a vector has across all of some orthonormal axes, brought to length 1; `None` if that is nothing.
+/// What a vector has across all of some orthonormal axes.
+fn rest(vector: &[f32], axes: &[&[f32]]) -> Vec<f32> {
+    let less = |rest: Vec<f32>, axis: &&[f32]| combined([1.0, -dot(&rest, axis)], [&rest, axis]);
+    axes.iter().fold(vector.to_vec(), less)
+}
+
+/// The direction of what a vector has across all of some orthonormal axes; `None` if that is nothing.
 pub fn across(vector: &[f32], axes: &[&[f32]]) -> Option<Vec<f32>> {
-    let along = |rest: Vec<f32>, axis: &&[f32]| combined([1.0, -dot(&rest, axis)], [&rest, axis]);
-    let mut rest = axes.iter().fold(vector.to_vec(), along);
+    let mut rest = rest(vector, axes);
     let length = dot(&rest, &rest).sqrt();
     rest.iter_mut().for_each(|number| *number /= length);
     (length > NO_DIRECTION).then_some(rest)
@@ -57,23 +62,17 @@ pub fn principal_axes(vectors: &[Vec<f32>]) -> [Vec<f32>; 2] {
 /// The axis across others along which vectors are longest: by iterated products with their second moments.
 fn principal_axis(vectors: &[Vec<f32>], others: &[&[f32]]) -> Vec<f32> {
     const ITERATIONS: usize = 200;
-    let dim = vectors[0].len();
-    let longest = vectors
-        .iter()
-        .max_by(|a, b| dot(a, a).total_cmp(&dot(b, b)));
+    let rests: Vec<Vec<f32>> = vectors.iter().map(|v| rest(v, others)).collect();
+    let dim = rests[0].len();
+    let longest = rests.iter().max_by(|a, b| dot(a, a).total_cmp(&dot(b, b)));
     let start = longest.and_then(|longest| across(longest, others));
-    let Some(mut axis) = start.or_else(|| any_across(dim, others)) else {
-        return vec![0.0; dim];
+    let start = start.or_else(|| any_across(dim, others));
+    let moved = |axis: Vec<f32>, _| {
+        let sum = |sum: Vec<f32>, v: &Vec<f32>| combined([1.0, dot(v, &axis)], [&sum, v]);
+        let product = rests.iter().fold(vec![0.0; dim], sum);
+        across(&product, others).unwrap_or(axis)
     };
-    for _ in 0..ITERATIONS {
-        let product = |sum: Vec<f32>, v: &Vec<f32>| combined([1.0, dot(v, &axis)], [&sum, v]);
-        let product = vectors.iter().fold(vec![0.0; dim], product);
-        match across(&product, others) {
-            Some(next) => axis = next,
-            None => return axis,
-        }
-    }
-    axis
+    (0..ITERATIONS).fold(start.unwrap_or_else(|| vec![0.0; dim]), moved)
 }
 
 #[cfg(test)]

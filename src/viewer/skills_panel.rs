@@ -4,7 +4,7 @@ use crate::env::humanoid::task::DT;
 use crate::train::body_policy::BodyPolicy;
 use crate::view::body_playthrough::{BodyContext, BodyPlaythrough};
 use crate::view::latent_map::{LatentMap, MapPoint};
-use eframe::egui::ecolor::Hsva;
+use eframe::egui::ecolor::HsvaGamma;
 use eframe::egui::{self, Color32, Pos2, Response, Sense, Stroke, Ui, Vec2, WidgetInfo};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
@@ -69,7 +69,7 @@ impl SkillsPanel {
                 None
             }
         };
-        ui.small("Click to hold a latent: the character does it. Large points are the clips' own.");
+        ui.small("Click to hold a latent: the character does it.");
         ui.checkbox(&mut self.glides, "Glide there")
             .on_hover_text("Along the great circle, in two seconds");
         let change = egui::Button::new("Change latents as in training");
@@ -113,15 +113,19 @@ fn disc(ui: &mut Ui, map: &LatentMap, now: &BodyPlaythrough) -> Option<Vec<f32>>
 /// Tells what the character does under the point at the pointer.
 fn told<'a>(
     response: Response,
-    map: &'a LatentMap,
+    map: &LatentMap,
     pointed: impl Fn(Pos2) -> Option<&'a MapPoint>,
 ) -> Response {
-    let point = response.hover_pos().and_then(pointed);
-    match point.map(|point| point.clip) {
-        None => response,
-        Some(None) => response.on_hover_text_at_pointer("falls"),
-        Some(Some(clip)) => response.on_hover_text_at_pointer(&map.legend[clip]),
-    }
+    let Some(point) = response.hover_pos().and_then(pointed) else {
+        return response;
+    };
+    let own = point.own.as_ref().map(|name| format!("latent of {name}"));
+    let does = match point.clip {
+        Some(clip) => format!("moves like {}", map.legend[clip]),
+        None => "falls".to_string(),
+    };
+    let words: Vec<String> = own.into_iter().chain([does]).collect();
+    response.on_hover_text_at_pointer(words.join("\n"))
 }
 
 /// Where the map is in the window.
@@ -154,9 +158,9 @@ impl Disc {
         );
         for point in &map.points {
             let pos = self.pos(map, &point.latent);
-            match point.of_clip {
-                true => painter.circle(pos, 5.0, colour(point.clip), Stroke::new(1.0, ink)),
-                false => painter.circle_filled(pos, 3.5, colour(point.clip)),
+            match point.own {
+                Some(_) => painter.circle(pos, 5.0, colour(point.clip), Stroke::new(1.0, ink)),
+                None => painter.circle_filled(pos, 3.5, colour(point.clip)),
             };
         }
         if let Some(path) = &now.path {
@@ -171,21 +175,21 @@ impl Disc {
 
 /// The clips and their colours. Returns a latent of the clip that is clicked.
 fn legend(ui: &mut Ui, map: &LatentMap) -> Option<Vec<f32>> {
+    let clips = map.legend.iter().enumerate();
+    let clips = clips.map(|(clip, name)| (Some(clip), &**name));
     let mut chosen = None;
     egui::ScrollArea::vertical().show(ui, |ui| {
-        for (clip, name) in map.legend.iter().enumerate() {
+        for (clip, name) in clips.chain([(None, "falls")]) {
             ui.horizontal(|ui| {
                 let (rect, _) = ui.allocate_exact_size(Vec2::splat(10.0), Sense::hover());
-                ui.painter()
-                    .circle_filled(rect.center(), 4.5, colour(Some(clip)));
+                ui.painter().circle_filled(rect.center(), 4.5, colour(clip));
                 if ui.selectable_label(false, name).clicked() {
-                    chosen = Some(clip);
+                    chosen = map.points.iter().find(|point| point.clip == clip);
                 }
             });
         }
     });
-    let first = map.points.iter().find(|point| point.clip == chosen);
-    chosen.and(first).map(|point| point.latent.clone())
+    chosen.map(|point| point.latent.clone())
 }
 
 /// The colour of a clip in the legend: one behind the other they are far apart.
@@ -193,9 +197,15 @@ fn colour(clip: Option<usize>) -> Color32 {
     /// Of a circle of hues: the golden section.
     const BETWEEN: f32 = 0.618_034;
     let Some(clip) = clip else {
-        return Color32::from_gray(90);
+        return Color32::from_gray(75);
     };
     let hue = (0.58 + BETWEEN * clip as f32).fract();
-    let (saturation, value) = [(0.75, 0.95), (0.45, 1.0), (0.9, 0.6)][clip % 3];
-    Hsva::new(hue, saturation, value, 1.0).into()
+    let (saturation, value) = [(0.9, 0.95), (0.55, 1.0), (1.0, 0.65)][clip % 3];
+    HsvaGamma {
+        h: hue,
+        s: saturation,
+        v: value,
+        a: 1.0,
+    }
+    .into()
 }

@@ -4,7 +4,10 @@ use crate::body::{keep, open, pointer, press, task, untrained};
 use eframe::egui::{Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use footwork::train::body_episodes::BodyEpisodes;
 use footwork::train::body_policy::BodyPolicy;
+use footwork::train::config::{Config, Preset};
+use footwork::train::tasks::find;
 use footwork::view::body_playthrough::{BodyContext, BodyPlaythrough};
 use footwork::view::latent_map::LatentMap;
 use footwork::view::sphere::dot;
@@ -89,7 +92,10 @@ fn a_click_on_the_map_changes_what_the_body_does() {
 #[test]
 fn it_glides_on_the_sphere_to_where_it_is_sent() {
     let mut harness = window();
-    steps(&mut harness, 1);
+    // So early that there is time before it falls.
+    while harness.state().timeline().at() > 1 {
+        press(&mut harness, "Back");
+    }
     press(&mut harness, "Glide there");
     click(&mut harness, [0.1, 0.8]);
     let latent = |harness: &Harness<BodyViewer>| -> Vec<f32> {
@@ -140,18 +146,31 @@ fn a_glide_arrives_and_a_fall_does_not_let_go() {
 }
 
 #[test]
-fn the_map_of_a_policy_is_the_same_every_time() {
-    let (config, task) = task("skills");
-    let policy = untrained(&config, &*task);
-    let episodes = task.body().unwrap();
-    let (library, draw) = (
-        episodes.recordings.clone().unwrap(),
-        episodes.latents.clone().unwrap(),
-    );
-    let [map, again] = [0, 1].map(|_| LatentMap::new(&episodes, &library, &draw, &*policy.driver));
+fn a_map_tells_what_the_body_does_and_is_the_same_every_time() {
+    let entry = find("skills").unwrap();
+    let mut config = entry.config(Preset::Fast);
+    config.ppo.envs = 4;
+    let policy_of = |config: &Config| {
+        let task = (entry.load)(config).unwrap().task;
+        (untrained(config, &*task), task.body().unwrap())
+    };
+    let map = |(policy, episodes): &(BodyPolicy, BodyEpisodes)| {
+        let library = episodes.recordings.as_ref().unwrap();
+        let draw = episodes.latents.as_ref().unwrap();
+        LatentMap::new(episodes, library, draw, &*policy.driver)
+    };
+    let falling = map(&policy_of(&config));
+    assert!(falling.points.iter().all(|point| point.clip.is_none()));
+    // Nothing is a fall now.
+    for height in ["min_head_height", "min_pelvis_height", "min_body_height"] {
+        config.task.settings.insert(height.into(), 0.0.into());
+    }
+    let lying = policy_of(&config);
+    let (map, again) = (map(&lying), map(&lying));
     assert!(map.points.len() > 100 && !map.legend.is_empty());
     for (point, same) in map.points.iter().zip(&again.points) {
         assert!((dot(&point.latent, &point.latent) - 1.0).abs() < 1e-4);
+        assert!(point.clip.is_some_and(|clip| clip < map.legend.len()));
         assert_eq!((&point.latent, point.clip), (&same.latent, same.clip));
     }
 }

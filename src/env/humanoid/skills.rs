@@ -91,25 +91,30 @@ fn repeatability(
     shares.iter().sum::<f64>() / shares.len().max(1) as f64
 }
 
-/// The clip that a body is most like in `seconds` under each of some latents that are held; `None` where it falls at
-/// once. Environments beyond those whose poses are compared have none.
+/// The clip that a body is most like under each of some latents that are held, in the second after it has settled;
+/// `None` where it falls before that is over. Environments beyond those whose poses are compared have none.
 pub fn clips_under(
     envs: &mut CpuHumanoidEnv,
     library: &MotionLibrary,
     driver: &dyn BodyDriver,
     latents: Vec<f32>,
-    seconds: f32,
 ) -> Vec<Option<usize>> {
+    let second = (1.0 / DT).round() as usize;
+    let settled = SETTLED_S * second;
     for episode in &mut envs.episodes {
-        episode[LIMIT] = (seconds / DT).round();
+        episode[LIMIT] = (settled + second) as f32;
     }
     let mut probe = FidelityProbe::new(library, envs);
     let start = DriverState::holding(latents, envs.batch.worlds.len());
-    play_episodes(envs, driver, start, |envs, running, _| {
-        probe.observe(envs, running);
+    let found = play_episodes(envs, driver, start, |envs, running, state| {
+        if state.steps > settled {
+            probe.observe(envs, running);
+        }
     });
-    let nearest = probe.nearest_clips();
-    nearest.iter().map(|clips| settled_clip(clips)).collect()
+    let nearest = probe.nearest_clips().into_iter().zip(found.ends);
+    nearest
+        .map(|(clips, end)| clips.first().copied().filter(|_| end != FAILED))
+        .collect()
 }
 
 /// The most frequent of the nearest clips of an episode's seconds: of those after it has settled, if it gets so far.
