@@ -42,45 +42,30 @@ impl LatentMap {
         draw: &LatentDraw,
         driver: &dyn BodyDriver,
     ) -> LatentMap {
-        let clips_of = |latents: &[Vec<f32>]| -> Vec<Option<usize>> {
-            let batches = latents.chunks(COMPARED).flat_map(|latents| {
-                let mut envs = episodes.open_all(latents.len());
-                clips_under(&mut envs, library, driver, latents.concat())
-            });
-            batches.collect()
-        };
         let own: Vec<Vec<f32>> = draw.clips().map(<[f32]>::to_vec).collect();
-        let first = if own.is_empty() {
-            draw.any(RANDOM)
-        } else {
-            own
-        };
+        let clips_of = |latents: &[Vec<f32>]| clips_of(episodes, library, driver, latents);
+        let count = own.len();
+        let first = if count == 0 { draw.any(RANDOM) } else { own };
         let known = clips_of(&first);
-        let axes = match draw.clips().next() {
-            Some(_) => principal_axes(&first),
-            None => principal_axes(&means(&first, &known)),
+        let axes = match count {
+            0 => principal_axes(&means(&first, &known)),
+            _ => principal_axes(&first),
         };
         let spread = spread(&axes, &draw.any(SPREAD));
         let clips = [known, clips_of(&spread)].concat();
-        let names = library.motions().iter().map(|motion| &motion.name);
-        let names: Vec<&String> = names.collect();
-        let own = draw
-            .clips()
-            .enumerate()
-            .map(|(clip, _)| names[clip].clone());
-        let own = own.map(Some).chain(std::iter::repeat(None));
+        let latents = [first, spread].concat();
         let order = by_frequency(&clips);
+        let name = |clip: usize| library.motions()[clip].name.clone();
         let entry = |clip: usize| order.iter().position(|&other| other == clip);
-        let latents = first.into_iter().chain(spread);
-        let points = latents.zip(clips).zip(own);
-        let points = points.map(|((latent, clip), own)| MapPoint {
+        let points = latents.into_iter().zip(clips).enumerate();
+        let points = points.map(|(number, (latent, clip))| MapPoint {
             latent,
             clip: clip.and_then(entry),
-            own,
+            own: (number < count).then(|| name(number)),
         });
         LatentMap {
             points: points.collect(),
-            legend: order.iter().map(|&clip| names[clip].clone()).collect(),
+            legend: order.iter().map(|&clip| name(clip)).collect(),
             axes,
         }
     }
@@ -108,6 +93,20 @@ impl LatentMap {
             .filter(|(_, far)| *far <= reach)
             .map(|(point, _)| point)
     }
+}
+
+/// The clip that a body moves like under each latent.
+fn clips_of(
+    episodes: &BodyEpisodes,
+    library: &MotionLibrary,
+    driver: &dyn BodyDriver,
+    latents: &[Vec<f32>],
+) -> Vec<Option<usize>> {
+    let batches = latents.chunks(COMPARED).flat_map(|latents| {
+        let mut envs = episodes.open_all(latents.len());
+        clips_under(&mut envs, library, driver, latents.concat())
+    });
+    batches.collect()
 }
 
 fn lift(axes: &[Vec<f32>; 2], at: [f32; 2], present: &[f32]) -> Vec<f32> {
