@@ -170,7 +170,11 @@ fn small_skills(low_level: &str, steps: u64) -> Config {
     (ppo.envs, ppo.rollout_length, ppo.minibatch_size, ppo.epochs) = (16, 8, 64, 1);
     ppo.network.hidden = vec![16];
     (config.steps, config.checkpoint_every) = (steps, 128);
-    for (key, value) in [("minibatch_size", 32), ("steps", 2), ("replay_capacity", 256)] {
+    for (key, value) in [
+        ("minibatch_size", 32),
+        ("steps", 2),
+        ("replay_capacity", 256),
+    ] {
         let set = config.set(&format!("amp.{key}"), value.into());
         set.expect("a key of the discriminator");
     }

@@ -1,7 +1,7 @@
 //! `footwork eval`.
 
 use super::Usage;
-use super::run::Run;
+use super::run::{Moved, Run};
 use super::say::{say, show};
 use anyhow::Result;
 use clap::Args;
@@ -45,9 +45,10 @@ pub struct Eval {
     /// to be seen, with each remedy
     #[arg(long)]
     motion_quality: bool,
-    /// Rate a run of skills: what its latents lead to
-    #[arg(long)]
-    skills: bool,
+    /// Rate a run of skills: what its latents lead to; of a run that steers a low level, where that is now, if it
+    /// has been moved
+    #[arg(long, value_name = "RUN")]
+    skills: Option<Option<PathBuf>>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -58,8 +59,12 @@ impl Eval {
         if self.episodes == 0 || self.episodes > 1_000_000 {
             return Err(Usage("--episodes must be from 1 to 1000000".into()).into());
         }
-        let run = Run::open(&self.run, self.data.as_deref())?;
-        if self.skills && run.config.ase.is_none() {
+        let moved = Moved {
+            data: self.data.as_deref(),
+            skills: self.skills.as_ref().and_then(|run| run.as_deref()),
+        };
+        let run = Run::open(&self.run, moved)?;
+        if matches!(self.skills, Some(None)) && run.config.ase.is_none() {
             let (path, task) = (self.run.display(), &run.config.task.name);
             let why = format!("--skills: {path} is a run of `{task}`, which has no skills");
             return Err(Usage(why).into());

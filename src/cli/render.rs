@@ -2,7 +2,7 @@
 
 use super::Usage;
 use super::latents::{ChosenLatents, LatentOptions};
-use super::run::Run;
+use super::run::{Moved, Run};
 use super::say::say;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
@@ -42,6 +42,9 @@ pub struct Render {
     /// Where the run's motion is now, if it has been moved
     #[arg(long, value_name = "DIR|FILE")]
     data: Option<PathBuf>,
+    /// Where the low level is now that the run steers, if it has been moved
+    #[arg(long, value_name = "RUN")]
+    skills: Option<PathBuf>,
     /// Which of the evaluation's episodes
     #[arg(
         long,
@@ -138,7 +141,11 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 impl Render {
     pub fn run(self) -> Result<()> {
         let output = self.check()?;
-        let run = Run::open(&self.run, self.data.as_deref())?;
+        let moved = Moved {
+            data: self.data.as_deref(),
+            skills: self.skills.as_deref(),
+        };
+        let run = Run::open(&self.run, moved)?;
         let body = run.task.body();
         let task = &run.config.task.name;
         let times = [self.start, self.seconds].map(|time| (time * RATE as f32).round() as usize);

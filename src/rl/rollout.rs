@@ -21,7 +21,7 @@ pub struct Rollout {
     pub log_prob_and_value: Array,
     /// `[steps][rows]`, of the task.
     pub reward: Array,
-    /// `[steps][rows]`, of the style, where there is one.
+    /// `[steps][rows]`, of the style, where there is one: the environments', or a learner's discriminator's.
     pub style_reward: Array,
     /// `[steps][rows]`, of being found by an encoder, where there is one.
     pub skill_reward: Array,
@@ -72,6 +72,7 @@ impl Rollout {
         let transition = Transition {
             step,
             reward: &mut self.reward,
+            style_reward: &mut self.style_reward,
             termination: &mut self.termination,
             group: &mut self.group,
             final_observation: &mut self.final_observation,

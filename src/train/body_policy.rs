@@ -11,7 +11,7 @@ use crate::rl::amp::FrozenDiscriminator;
 use anyhow::{Context, Result};
 use std::sync::Arc;
 
-/// What a checkpoint's policy drives, with its discriminator if the run has one.
+/// What a checkpoint's policy drives, with its discriminator or its low level's, if there is one.
 pub struct BodyPolicy {
     /// Who acts.
     pub driver: Arc<dyn BodyDriver>,
@@ -34,9 +34,10 @@ impl BodyPolicy {
     /// The checkpoint is not of such a run.
     pub fn new(mut checkpoint: Checkpoint, config: &Config, task: &dyn Task) -> Result<BodyPolicy> {
         let style = checkpoint.header.spec.style;
-        let discriminator = match &config.amp {
-            None => None,
-            Some(amp) => {
+        let discriminator = match (task.low_level(), &config.amp) {
+            (Some(low_level), _) => Some(low_level.discriminator.clone()),
+            (None, None) => None,
+            (None, Some(amp)) => {
                 let mut learner = checkpoint.sections.take("learner")?;
                 let latents = config.ase.as_ref().map(|ase| ase.rewards().latents);
                 let latents = latents.unwrap_or_default();
@@ -60,19 +61,24 @@ impl BodyPolicy {
         let count = envs.batch.worlds.len();
         let mut before: Vec<Vec<f32>> = (0..count).map(|env| moment(envs, env)).collect();
         let (mut style, mut cosine, mut steps) = (0.0, None, 0usize);
-        play_episodes(envs, &*self.driver, DriverState::default(), |envs, running, state| {
-            let dim = state.latents.len() / count;
-            for env in (0..count).filter(|&env| running[env]) {
-                let (now, latent) = (moment(envs, env), &state.latents[env * dim..][..dim]);
-                let moments = [&before[env][..], &now];
-                style += f64::from(discriminator.reward(moments, latent));
-                if let Some(found) = discriminator.cosine(moments, latent) {
-                    *cosine.get_or_insert(0.0) += f64::from(found);
+        play_episodes(
+            envs,
+            &*self.driver,
+            DriverState::default(),
+            |envs, running, state| {
+                let dim = state.latents.len() / count;
+                for env in (0..count).filter(|&env| running[env]) {
+                    let (now, latent) = (moment(envs, env), &state.latents[env * dim..][..dim]);
+                    let moments = [&before[env][..], &now];
+                    style += f64::from(discriminator.reward(moments, latent));
+                    if let Some(found) = discriminator.cosine(moments, latent) {
+                        *cosine.get_or_insert(0.0) += f64::from(found);
+                    }
+                    steps += 1;
+                    before[env] = now;
                 }
-                steps += 1;
-                before[env] = now;
-            }
-        });
+            },
+        );
         let mean = |sum: f64| sum / steps.max(1) as f64;
         Some(StyleReport {
             style: mean(style),

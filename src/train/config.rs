@@ -55,7 +55,11 @@ pub struct Config {
     /// Metres of one unit of BVH files, for tasks of a simulated body; without it found from the skeletons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit_m: Option<f32>,
-    /// Environment steps after which training stops.
+    /// The low level whose skills the policy steers, for tasks of a simulated body: a run's folder, or one of its
+    /// checkpoints.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skills: Option<PathBuf>,
+    /// Environment steps after which training stops; decisions, where a low level is steered.
     pub steps: u64,
     /// Seconds after which training stops.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -157,6 +161,9 @@ pub enum ConfigError {
         /// Why it cannot work.
         why: String,
     },
+    /// A low level that cannot be steered.
+    #[error("{0}")]
+    LowLevel(String),
     /// A mistake in a task's own choices.
     #[error("[task]: {0}")]
     Settings(String),
@@ -203,6 +210,7 @@ impl Config {
             ground: false,
             roles: None,
             unit_m: None,
+            skills: None,
             steps: chosen.steps,
             max_time_s: None,
             stop_at_success: None,
@@ -219,7 +227,8 @@ impl Config {
         }
     }
 
-    /// One of the presets of the task called `task`, changed by the keys that a TOML file names.
+    /// One of the presets of the task called `task`, changed by the keys that a TOML file names. `choices` is told
+    /// whether these name a low level.
     ///
     /// # Errors
     /// See [`ConfigError`].
@@ -227,7 +236,7 @@ impl Config {
         path: &Path,
         task: &str,
         preset: Preset,
-        presets: fn(Preset) -> TaskPreset,
+        choices: &dyn Fn(Preset, bool) -> TaskPreset,
     ) -> Result<Self, ConfigError> {
         let text = read(path)?;
         let mut changes = parse(path, &text)?;
@@ -250,7 +259,9 @@ impl Config {
                 message: mistake.problem,
             },
         };
-        let config = Config::preset(task, preset, presets(preset));
+        let skills = changes.get("skills").and_then(toml::Value::as_str);
+        let steers = skills.is_some_and(|skills| !skills.is_empty());
+        let config = Config::preset(task, preset, choices(preset, steers));
         let config = config.changed(changes).map_err(|mistake| {
             let written = version.as_ref().and_then(toml::Value::as_str);
             let written = written.filter(|version| *version != VERSION);
@@ -291,9 +302,10 @@ impl Config {
             key: key.to_string(),
             problem,
         };
-        if matches!(key, "preset" | "task.name") {
+        if matches!(key, "preset" | "task.name" | "skills") {
             return Err(mistaken(
-                "it decides what all else begins with: give `--preset` or another TASK".into(),
+                "it decides what all else begins with: give `--preset`, `--skills` or another TASK"
+                    .into(),
             ));
         }
         let names = key.rsplit('.');
@@ -322,6 +334,7 @@ impl Config {
         config.data = config.data.filter(named);
         config.data_folder = config.data_folder.filter(named);
         config.roles = config.roles.filter(named);
+        config.skills = config.skills.filter(named);
         config.unit_m = config.unit_m.filter(|&unit| unit != 0.0);
         config.max_time_s = config.max_time_s.filter(|&seconds| seconds != 0.0);
         config.stop_at_success = config.stop_at_success.filter(|&success| success != 0.0);
@@ -335,6 +348,7 @@ impl Config {
         all.entry("data_folder").or_insert("".into());
         all.entry("ground").or_insert(false.into());
         all.entry("roles").or_insert("".into());
+        all.entry("skills").or_insert("".into());
         all.entry("unit_m").or_insert(0.0.into());
         all.entry("max_time_s").or_insert(0.0.into());
         all.entry("stop_at_success").or_insert(0.0.into());
@@ -416,7 +430,7 @@ impl Config {
             0.0,
             1e3,
         )?;
-        if chosen.rule == WeightRule::Fixed {
+        if chosen.rule == WeightRule::Fixed || self.skills.is_some() {
             return Ok(());
         }
         let why = match &self.amp {
@@ -438,7 +452,7 @@ impl Config {
 }
 
 /// Keys that decide over what is learned.
-const DECISIVE: [&str; 5] = ["seed", "task", "ppo", "amp", "task_weight"];
+const DECISIVE: [&str; 6] = ["seed", "task", "ppo", "amp", "ase", "task_weight"];
 
 /// Bytes of the longest configuration.
 const MAX_BYTES: u64 = 1 << 24;

@@ -6,6 +6,8 @@ mod bench;
 #[cfg(unix)]
 mod damaged;
 mod data;
+#[path = "../support/low_level.rs"]
+mod low_level;
 #[path = "../support/mocap.rs"]
 mod mocap;
 mod obstacles;
@@ -16,6 +18,7 @@ mod render;
 mod sim;
 mod skills;
 mod stand;
+mod steering;
 #[cfg(unix)]
 mod stopped;
 mod style;

@@ -60,6 +60,16 @@ fn mistaken_options_name_what_was_meant() {
             "train punch --resume run --task-weight pd",
             "cannot be used with",
         ),
+        ("train skills --set ase.latent=0", "ase.latent is 0"),
+        ("train skills --set ase.latent=1", "between 2 and 256"),
+        (
+            "train skills --set ase.kept_steps=[9,3]",
+            "the first of ase.kept_steps is 9",
+        ),
+        ("train skills --low-level best", "per-clip"),
+        ("train punch --low-level ase", "--low-level is for `skills`"),
+        ("compare punch", "--skills RUN names the low level"),
+        ("compare imitate --skills run", "invalid value 'imitate'"),
         ("eval", "required arguments"),
         (
             "eval run --episodes 0",

@@ -12,7 +12,9 @@ const AMP: &str = "--set amp.minibatch_size=32 --set amp.replay_capacity=256 \
 #[test]
 fn latents_are_drawn_one_under_another_and_gone_between() {
     let place = Place::new();
-    place.done(&format!("train skills {PPO} {AMP} --out run"));
+    place.done(&format!(
+        "train skills {PPO} {AMP} --set ase.low_level=ase --out run"
+    ));
     let shown = |options: &str, file: &str| {
         let options = format!("{options} --start 0 --seconds 1 --out {file}");
         place.done(&format!("render run {options}"));

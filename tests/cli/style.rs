@@ -165,7 +165,7 @@ fn what_a_style_cannot_be_is_refused() {
             "--task-weight pd --set amp.task_weight=0",
             ["task_weight.rule is pd", "but one"],
         ),
-        ("punch", "--task-weight bd", ["invalid value", "'pd'"]),
+        ("punch", "--task-weight bd", ["invalid value", "fixed, pd"]),
         (
             "punch",
             "--set task_weight.rule=bd",

@@ -3,7 +3,9 @@
 //! the steps, and both ways have theirs.
 
 use footwork::container::{Section, SectionError};
-use footwork::env::{Demonstrations, EnvBatch, EnvSpec, ObservationSpec, Transition, VecEnv, termination};
+use footwork::env::{
+    Demonstrations, EnvBatch, EnvSpec, ObservationSpec, Transition, VecEnv, termination,
+};
 use footwork::gpu::{Array, Device};
 use footwork::kernels::rng::{random4, uniform01};
 use footwork::nn::layer::Activation;
@@ -68,7 +70,11 @@ impl VecEnv for Pendulums {
     }
 
     fn observe(&mut self, out: &mut Array, at: usize) {
-        let seen: Vec<f32> = self.states.iter().flat_map(|&state| observed(state)).collect();
+        let seen: Vec<f32> = self
+            .states
+            .iter()
+            .flat_map(|&state| observed(state))
+            .collect();
         out.host_mut()[at..][..seen.len()].copy_from_slice(&seen);
     }
 
@@ -80,7 +86,11 @@ impl VecEnv for Pendulums {
             let speed = state[1] + DT * (6.0 * torque - state[1]);
             *state = [state[0] + DT * speed, speed];
             let over = (self.steps as usize + env).is_multiple_of(50);
-            let end = if over { termination::TRUNCATED } else { termination::RUNNING };
+            let end = if over {
+                termination::TRUNCATED
+            } else {
+                termination::RUNNING
+            };
             out.termination.host_mut()[first + env] = end;
             out.reward.host_mut()[first + env] = 0.0;
             if over {
@@ -142,7 +152,16 @@ fn learner(envs: &EnvBatch, ase: &Ase) -> AmpLearner {
         ..Amp::default()
     };
     let recordings = Arc::new(recordings());
-    AmpLearner::new(&ppo, &amp, &ase.rewards(), &recordings, envs, &Device::Cpu, 1).unwrap()
+    AmpLearner::new(
+        &ppo,
+        &amp,
+        &ase.rewards(),
+        &recordings,
+        envs,
+        &Device::Cpu,
+        1,
+    )
+    .unwrap()
 }
 
 /// How a policy turns under latents that are kept: of each, the fraction of steps one way.
@@ -167,6 +186,7 @@ fn turning(learner: &AmpLearner, latent: usize) -> Vec<f32> {
         let out = Transition {
             step: 0,
             reward: &mut Array::Host(vec![0.0; ENVS]),
+            style_reward: &mut Array::Host(vec![0.0; ENVS]),
             termination: &mut Array::Host(vec![0; ENVS]),
             group: &mut Array::Host(vec![0; ENVS]),
             final_observation: &mut Array::Host(vec![0.0; 3 * ENVS]),
@@ -200,7 +220,10 @@ fn latents_come_to_mean_ways_of_turning() {
     let mut cosine = 0.0;
     for update in 0..500 {
         let found = learner.iterate(&mut envs, update * 1024).unwrap();
-        let own = found.losses.iter().find(|(name, _)| *name == "encoder_cosine");
+        let own = found
+            .losses
+            .iter()
+            .find(|(name, _)| *name == "encoder_cosine");
         cosine = own.unwrap().1;
     }
     let forward = turning(&learner, 2);

@@ -71,8 +71,13 @@ pub fn evaluate(
     let library = task.library.clone();
     let mut envs = CpuHumanoidEnv::unstaggered(task, 0..episodes, seed);
     let mut probe = FidelityProbe::new(&library, &envs);
-    let found = play_episodes(&mut envs, driver, DriverState::default(), |envs, running, _| {
-        probe.observe(envs, running);
-    });
+    let found = play_episodes(
+        &mut envs,
+        driver,
+        DriverState::default(),
+        |envs, running, _| {
+            probe.observe(envs, running);
+        },
+    );
     probe.report(&found)
 }

@@ -84,7 +84,9 @@ fn repeatability(
     let shares: Vec<f64> = nearest
         .chunks(repeats)
         .filter_map(|episodes| {
-            let settled = episodes.iter().flat_map(|clips| clips.iter().skip(SETTLED_S));
+            let settled = episodes
+                .iter()
+                .flat_map(|clips| clips.iter().skip(SETTLED_S));
             share_of_most_frequent(&settled.copied().collect::<Vec<_>>())
         })
         .collect();

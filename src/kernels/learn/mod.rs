@@ -3,6 +3,9 @@
 //! networks, in order: [`forward`], an objective such as [`ppo_loss`], [`backward`], [`mod@gradient`],
 //! [`reduce_grads`]; [`network`] defines their memory layout. A step against any gradient: [`adapt_lr`],
 //! [`grad_norm`], [`adam`].
+//!
+//! Under a high level, a low-level policy is given its [`low_level_input`]; [`keep_first_end`] and [`sum_decision`]
+//! make a decision's transition of the steps that it lasts.
 
 pub mod adam;
 pub mod adapt_lr;
@@ -16,6 +19,8 @@ pub mod gae;
 pub mod gather_samples;
 pub mod grad_norm;
 pub mod gradient;
+pub mod keep_first_end;
+pub mod low_level_input;
 pub mod network;
 pub mod normalize_advantages;
 pub mod ppo_loss;
@@ -25,3 +30,4 @@ pub mod sample_action;
 pub mod skill_reward;
 pub mod style_reward;
 pub mod style_windows;
+pub mod sum_decision;

@@ -1,15 +1,17 @@
 //! A discriminator that learns no more, on the host: what it takes a movement for.
 
+use super::batch_discriminator::BatchDiscriminator;
 use super::discriminator::network;
 use super::{Amp, DiscriminatorLoss, LatentUse};
 use crate::container::Section;
-use crate::gpu::Array;
+use crate::gpu::{Array, Device};
 use crate::kernels::learn::{encoder_loss, style_reward};
 use crate::nn::cpu::forward;
-use crate::nn::{Network, RunningMeanStd};
+use crate::nn::{Engine, EngineSize, Network, RunningMeanStd};
 use anyhow::Result;
 
 /// A discriminator that learns no more.
+#[derive(Clone)]
 pub struct FrozenDiscriminator {
     network: Network,
     parameters: Vec<f32>,
@@ -68,6 +70,36 @@ impl FrozenDiscriminator {
         let mut output = vec![0.0; self.network.outputs()];
         forward(&self.network, &self.parameters, window.host(), &mut output);
         output
+    }
+
+    /// A copy on a device, for so many windows at once.
+    ///
+    /// # Errors
+    /// The device has no room for it.
+    pub fn on(&self, device: &Device, rows: usize) -> Result<BatchDiscriminator> {
+        let size = EngineSize {
+            parameters: self.parameters.len(),
+            extras: 0,
+            max_rows: rows,
+            minibatch: 1,
+        };
+        Ok(BatchDiscriminator {
+            engine: Engine::layerwise(device, vec![self.network.clone()], size)?,
+            parameters: Array::from_slice(device, &self.parameters),
+            normalizer: self.normalizer.on(device),
+            latents: self.latents,
+            outputs: Array::zeroed(device, rows * self.network.outputs()),
+            params: style_reward::Params {
+                samples: rows as u32,
+                ..self.params
+            },
+            device: device.clone(),
+        })
+    }
+
+    /// All that it has learned: the network's parameters, and the moments of its normaliser.
+    pub fn learned(&self) -> [&[f32]; 2] {
+        [&self.parameters, self.normalizer.moments()]
     }
 
     /// A reward from 0, an agent's without doubt, to 1, a recording's.

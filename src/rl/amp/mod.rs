@@ -2,10 +2,11 @@
 //! of the agents, who are rewarded for being taken for recordings.
 //!
 //! [`Amp`] holds what may be chosen, [`discriminator`] learns and rewards, [`learner`] is PPO with both; a
-//! [`frozen_discriminator`] is what is left when learning is over. [`LatentUse`] is what a discriminator makes of
-//! the latents of [skills](super::ase).
+//! [`frozen_discriminator`] is what is left when learning is over, and a [`BatchDiscriminator`] the same on a
+//! device. [`LatentUse`] is what a discriminator makes of the latents of [skills](super::ase).
 
 mod adaptive_steps;
+mod batch_discriminator;
 pub mod discriminator;
 pub mod frozen_discriminator;
 pub mod latent_use;
@@ -13,6 +14,7 @@ pub mod learner;
 mod loss;
 mod replay;
 
+pub use batch_discriminator::BatchDiscriminator;
 pub use discriminator::Discriminator;
 pub use frozen_discriminator::FrozenDiscriminator;
 pub use latent_use::{LatentUse, SkillRewards};

@@ -154,6 +154,7 @@ impl VecEnv for LatentEnv {
             Transition {
                 step,
                 reward: out.reward,
+                style_reward: out.style_reward,
                 termination: &mut *out.termination,
                 group: out.group,
                 final_observation: &mut self.inner_final,

@@ -4,16 +4,29 @@
 //! [`Ase`] holds what may be chosen, [`LatentDraw`] says which latents there are, and [`LatentEnv`] are
 //! environments around environments whose agents move under them; a [`LatentDriver`] moves
 //! bodies on the host.
+//!
+//! When learning is over a [`FrozenLowLevel`] is left, whose skills a high-level policy may steer: [`HighLevelEnv`]
+//! makes environments of a body into environments of latents, and a [`HighLevelDriver`] moves bodies on the host.
 
+mod batch_low_level;
+mod frozen_low_level;
+mod high_level_driver;
+mod high_level_env;
 mod latent_draw;
 mod latent_driver;
 mod latent_env;
 
 use super::amp::{LatentUse, SkillRewards};
+pub use frozen_low_level::FrozenLowLevel;
+pub use high_level_driver::HighLevelDriver;
+pub use high_level_env::HighLevelEnv;
 pub use latent_draw::LatentDraw;
 pub use latent_driver::LatentDriver;
 pub use latent_env::LatentEnv;
 use serde::{Deserialize, Serialize};
+
+/// Steps of the low level that a decision of a high level lasts.
+pub const STEPS_PER_DECISION: usize = 5;
 
 /// How latents come to mean movements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -46,8 +59,9 @@ pub struct Ase {
 
 impl Default for Ase {
     fn default() -> Self {
+        // What learned the clips of `examples/L17_B5.toml` within an hour on two cores.
         Ase {
-            low_level: LowLevel::Ase,
+            low_level: LowLevel::PerClip,
             latent: 16,
             kept_steps: [1, 150],
             skill_weight: 0.5,

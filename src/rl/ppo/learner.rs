@@ -332,7 +332,12 @@ impl PpoLearner {
         self.value_normalizer.normalize_advantages(&mut rollouts);
         let device = self.device.clone();
         let scale = self.value_normalizer.scale().clone();
-        let mut batch = Batch::new(&device, &rollouts, scale, self.under_other_latents(&rollouts));
+        let mut batch = Batch::new(
+            &device,
+            &rollouts,
+            scale,
+            self.under_other_latents(&rollouts),
+        );
         let samples = batch.samples();
         for epoch in 0..self.config.epochs {
             let stream = SHUFFLE + epoch as u32;
@@ -358,10 +363,7 @@ impl PpoLearner {
             .iter()
             .map(|rollout| self.under_another(rollout))
             .collect();
-        Some(rows::join(
-            &self.device,
-            &parts.iter().collect::<Vec<_>>(),
-        ))
+        Some(rows::join(&self.device, &parts.iter().collect::<Vec<_>>()))
     }
 
     fn under_another(&self, rollout: &Rollout) -> Array {

@@ -45,5 +45,5 @@ pub fn find(name: &str) -> Result<&'static TaskEntry, ConfigError> {
 /// See [`ConfigError`].
 pub fn config_of(run: &RunDir) -> Result<Config, ConfigError> {
     let path = run.config_path();
-    find(&Config::task_of(&path)?)?.config_from(&path, Preset::default())
+    find(&Config::task_of(&path)?)?.config_from(&path, Preset::default(), false)
 }

@@ -23,6 +23,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     name: "skills",
     about: "Teach a simulated body many skills, chosen by a latent (ASE)",
     preset,
+    steering: None,
     spec: check,
     takes_motions: true,
     load: |config| load::<Skills>(config, scenes::humanoid()),

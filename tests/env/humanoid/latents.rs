@@ -55,7 +55,9 @@ fn agents_move_as_without_latents_and_observe_them_too() {
         let length: f32 = latents[own.clone()].iter().map(|x| x * x).sum();
         assert!((length - 1.0).abs() < 1e-5);
         let next = own.start + ROWS * LATENT..own.end + ROWS * LATENT;
-        let changed = latents.get(next).is_some_and(|next| *next != latents[own.clone()]);
+        let changed = latents
+            .get(next)
+            .is_some_and(|next| *next != latents[own.clone()]);
         changes += u32::from(changed);
         if *end != termination::RUNNING {
             // An episode ends under the latent that it was played with.
@@ -72,7 +74,8 @@ fn agents_move_as_without_latents_and_observe_them_too() {
 #[test]
 fn latents_are_the_same_on_the_gpu_and_from_a_saved_state() {
     for low_level in [LowLevel::Ase, LowLevel::PerClip] {
-        let latents = |played: &Played, width: usize| split(&played.observations, width, width - LATENT).1;
+        let latents =
+            |played: &Played, width: usize| split(&played.observations, width, width - LATENT).1;
         let mut all = Vec::new();
         for device in [Device::Cpu, Device::from(gpu())] {
             let mut envs = opened(&device, low_level);
@@ -101,7 +104,10 @@ fn latents_of_clips_lie_about_their_clips() {
     let mut envs = opened(&Device::Cpu, LowLevel::PerClip);
     let width = envs.spec().observation.dim();
     let played = play(&Device::Cpu, &mut envs, 20, 1);
-    for latent in split(&played.observations, width, width - LATENT).1.chunks_exact(LATENT) {
+    for latent in split(&played.observations, width, width - LATENT)
+        .1
+        .chunks_exact(LATENT)
+    {
         let cosine = |centre: &&[f32]| centre.iter().zip(latent).map(|(a, b)| a * b).sum::<f32>();
         let nearest = centres.iter().map(cosine).fold(-1.0, f32::max);
         assert!(nearest > 0.95, "{nearest}");

@@ -1,4 +1,5 @@
 mod latents;
 mod mirrored;
+mod skills;
 mod stand;
 mod style;

@@ -90,6 +90,7 @@ pub fn play(device: &Device, envs: &mut dyn VecEnv, steps: usize, seed: u32) -> 
         let out = Transition {
             step,
             reward: &mut reward,
+            style_reward: &mut Array::zeroed(device, 1),
             termination: &mut ends,
             group: &mut groups,
             final_observation: &mut finals,
@@ -220,7 +221,8 @@ fn a_frozen_discriminator_rewards_as_it_did() {
             ..Amp::default()
         };
         let samples = rollouts[0].samples();
-        let learning = Discriminator::new(&amp, LatentUse::None, &recorded, &Device::Cpu, samples, 1);
+        let learning =
+            Discriminator::new(&amp, LatentUse::None, &recorded, &Device::Cpu, samples, 1);
         let mut learning = learning.unwrap();
         learning.reward(&mut rollouts);
         learning.learn();
@@ -264,6 +266,7 @@ fn a_moved_target_stands_where_it_was_put() {
     let out = Transition {
         step: 0,
         reward: &mut reward,
+        style_reward: &mut Array::zeroed(&Device::Cpu, 2),
         termination: &mut ends,
         group: &mut Array::zeroed(&Device::Cpu, 2),
         final_observation: &mut finals,

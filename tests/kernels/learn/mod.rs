@@ -8,6 +8,7 @@ mod gae;
 mod gather_samples;
 mod grad_norm;
 mod gradient;
+mod high_level;
 mod network;
 mod normalize_advantages;
 mod ppo_loss;

@@ -197,9 +197,8 @@ fn encoder_losses_agree() {
                 let found: Vec<f64> = (0..LATENT)
                     .map(|i| f64::from(found[i]) + if i == at { by } else { 0.0 })
                     .collect();
-                let product = |a: &[f64], b: &[f64]| -> f64 {
-                    a.iter().zip(b).map(|(a, b)| a * b).sum()
-                };
+                let product =
+                    |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
                 let latent: Vec<f64> = latent.iter().map(|&x| f64::from(x)).collect();
                 -0.3 * product(&found, &latent) / product(&found, &found).sqrt()
             };
@@ -306,8 +305,7 @@ fn diversity_losses_agree() {
             let (own, other) = (&sample[SEEN - LATENT..SEEN], &sample[ROW - LATENT..]);
             let product =
                 |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-            let cosine =
-                product(own, other) / (product(own, own) * product(other, other)).sqrt();
+            let cosine = product(own, other) / (product(own, own) * product(other, other)).sqrt();
             let loss = |at: usize, by: f64| {
                 let change = |i: usize| {
                     let moved = if i == at { by } else { 0.0 };

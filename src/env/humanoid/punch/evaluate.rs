@@ -51,17 +51,22 @@ pub fn evaluate(
     let mut probe = FidelityProbe::new(library, &envs);
     let mut steering = SteeringProbe::new(&task, episodes);
     let mut near = PoseTrack::default();
-    let found = play_episodes(&mut envs, driver, DriverState::default(), |envs, running, _| {
-        probe.observe(envs, running);
-        steering.observe(envs, running);
-        let worlds = envs.batch.worlds.iter().zip(&envs.task_states);
-        for (env, (world, state)) in worlds.enumerate().take(COMPARED) {
-            let gap = task.gap(&world.state.q);
-            if running[env] && gap.length() < NEAR && !task.is_hit(state) {
-                near.push(envs.task().model(), &world.state.q);
+    let found = play_episodes(
+        &mut envs,
+        driver,
+        DriverState::default(),
+        |envs, running, _| {
+            probe.observe(envs, running);
+            steering.observe(envs, running);
+            let worlds = envs.batch.worlds.iter().zip(&envs.task_states);
+            for (env, (world, state)) in worlds.enumerate().take(COMPARED) {
+                let gap = task.gap(&world.state.q);
+                if running[env] && gap.length() < NEAR && !task.is_hit(state) {
+                    near.push(envs.task().model(), &world.state.q);
+                }
             }
-        }
-    });
+        },
+    );
     // In the order of the statistics.
     let [hit, fist, far, angle] = [5, 6, 7, 8].map(|stat| found.mean(stat));
     PunchReport {

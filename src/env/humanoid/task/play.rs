@@ -33,6 +33,7 @@ pub struct DrivenStep {
     pub reward: Array,
     /// How it ended, `[rows]`.
     pub ends: Array<u32>,
+    style_reward: Array,
     group: Array<u32>,
     last: Array,
 }
@@ -45,6 +46,7 @@ impl DrivenStep {
             observation: Array::Host(vec![0.0; count * dim]),
             reward: Array::Host(vec![0.0; count]),
             ends: Array::Host(vec![termination::RUNNING; count]),
+            style_reward: Array::Host(vec![0.0; count]),
             group: Array::Host(vec![0; count]),
             last: Array::Host(vec![0.0; count * dim]),
         }
@@ -62,6 +64,7 @@ impl DrivenStep {
         let out = Transition {
             step: 0,
             reward: &mut self.reward,
+            style_reward: &mut self.style_reward,
             termination: &mut self.ends,
             group: &mut self.group,
             final_observation: &mut self.last,
