@@ -1,4 +1,4 @@
-//! One file a subcommand.
+//! One file a subcommand, and what they share.
 
 mod ablate;
 #[cfg(feature = "report")]
@@ -6,6 +6,8 @@ mod bench;
 mod compare;
 mod data;
 mod eval;
+#[cfg(feature = "viewer")]
+mod latents;
 #[cfg(feature = "viewer")]
 mod play;
 mod progress;

@@ -1,19 +1,24 @@
 //! `footwork render`.
 
 use super::Usage;
+use super::latents::{ChosenLatents, LatentOptions};
 use super::run::{Moved, Run};
 use super::say::say;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
+use footwork::env::humanoid::driver::BodyDriver;
 use footwork::env::humanoid::task::play;
 use footwork::gpu::Gpu;
 use footwork::nn::Policy;
 use footwork::playback::player::Style;
 use footwork::playback::stitch::Stitching;
+use footwork::train::body_episodes::BodyEpisodes;
 use footwork::view::body_film::BodyFilm;
 use footwork::view::camera::FOLLOW;
 use footwork::view::debug_draw::scene;
 use footwork::view::image_files::{self, Output};
+use footwork::view::latent_path::SteeredDriver;
+use footwork::view::latent_strips::latent_strips;
 use footwork::view::playthrough::{Playthrough, PlaythroughContext};
 use footwork::view::strip::film_strip;
 use footwork::view::{Camera, RenderTarget, Renderer};
@@ -97,6 +102,8 @@ pub struct Render {
     /// How the motion is blended where a match jumps to another frame
     #[arg(long, value_enum, default_value_t = Blend::Inertialize)]
     blend: Blend,
+    #[command(flatten)]
+    latents: LatentOptions,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -139,20 +146,15 @@ impl Render {
             skills: self.skills.as_deref(),
         };
         let run = Run::open(&self.run, moved)?;
+        let body = run.task.body();
+        let task = &run.config.task.name;
+        let times = [self.start, self.seconds].map(|time| (time * RATE as f32).round() as usize);
+        let latents = self.latents.choose(task, body.as_ref(), times)?;
         let policy = run.checkpoint(&run.path)?.policy;
         let gpu = Gpu::drawing()?;
-        if let Some(body) = run.task.body() {
-            let mut envs = body.open(self.episode as u32);
-            let model = envs.task().model().clone();
+        if let Some(body) = &body {
             let driver = run.task.driver(&policy);
-            let motion = play::record(&mut envs, &*driver, &run.config.task.name);
-            if let Output::Png(path) = &output {
-                film_strip(&gpu, &model, &motion, [self.start, self.seconds], path)?;
-                say!("{}", path.display());
-                return Ok(());
-            }
-            let mut film = BodyFilm::new(&gpu, &model, &motion, self.camera(), self.size);
-            return self.write(&output, &mut film);
+            return self.body(&gpu, body, &*driver, &latents, task, &output);
         }
         let locomotion = run.locomotion("render")?;
         let (matcher, task) = (locomotion.matcher.clone(), locomotion.task);
@@ -167,6 +169,39 @@ impl Render {
         };
         film.camera.follow(film.playthrough.shown.at, 1.0);
         self.write(&output, &mut film)
+    }
+
+    /// Draws an episode of a simulated body.
+    fn body(
+        &self,
+        gpu: &Gpu,
+        body: &BodyEpisodes,
+        driver: &dyn BodyDriver,
+        latents: &ChosenLatents,
+        task: &str,
+        output: &Output,
+    ) -> Result<()> {
+        let (episode, times) = (self.episode as u32, [self.start, self.seconds]);
+        if let ChosenLatents::Strips(shown) = latents {
+            latent_strips(gpu, body, driver, shown, episode, times, output.path())?;
+            say!("{}", output.path().display());
+            return Ok(());
+        }
+        let mut envs = body.open(episode);
+        let model = envs.task().model().clone();
+        let motion = match latents {
+            ChosenLatents::Path(path) => {
+                play::record(&mut envs, &SteeredDriver { driver, path }, task)
+            }
+            _ => play::record(&mut envs, driver, task),
+        };
+        if let Output::Png(path) = output {
+            film_strip(gpu, &model, &motion, times, path)?;
+            say!("{}", path.display());
+            return Ok(());
+        }
+        let mut film = BodyFilm::new(gpu, &model, &motion, self.camera(), self.size);
+        self.write(output, &mut film)
     }
 
     fn camera(&self) -> Camera {
@@ -240,6 +275,7 @@ impl Render {
         if self.episode >= 1000 {
             return usage("--episode must be from 0 to 999");
         }
+        self.latents.check(matches!(output, Output::Png(_)))?;
         let path = output.path();
         if path.exists() && !self.force {
             bail!("{} exists: give --force to write over it", path.display());

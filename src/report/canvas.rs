@@ -126,6 +126,17 @@ impl Canvas<'_> {
         drawn(self.backend.draw_rect(corner, opposite, &pen, true))
     }
 
+    /// A picture, RGB, `width` pixels wide.
+    pub fn picture(&mut self, corner: Pixel, width: usize, rgb: &[u8]) -> Result<(), ReportError> {
+        for (number, pixel) in rgb.chunks_exact(3).enumerate() {
+            let (x, y) = ((number % width) as f64, (number / width) as f64);
+            let from = (corner.0 + x, corner.1 + y);
+            let to = (from.0 + 1.0, from.1 + 1.0);
+            self.rectangle(from, to, RGBColor(pixel[0], pixel[1], pixel[2]))?;
+        }
+        Ok(())
+    }
+
     /// A filled shape with straight sides; where these cross, the even-odd rule decides.
     pub fn polygon(
         &mut self,

@@ -2,6 +2,7 @@
 
 use crate::env::humanoid::task::{CpuHumanoidEnv, HumanoidTask};
 use crate::physics::motion_library::MotionLibrary;
+use crate::rl::ase::LatentDraw;
 use std::sync::Arc;
 
 /// Seed of the evaluation episodes: the same for every policy.
@@ -13,6 +14,8 @@ pub struct BodyEpisodes {
     task: Arc<dyn Fn(u32) -> Arc<dyn HumanoidTask> + Send + Sync>,
     /// What the body is to move like.
     pub recordings: Option<Arc<MotionLibrary>>,
+    /// The latents under which it moves, if it does.
+    pub latents: Option<LatentDraw>,
 }
 
 impl BodyEpisodes {
@@ -24,7 +27,13 @@ impl BodyEpisodes {
         BodyEpisodes {
             task: Arc::new(move |seed| -> Arc<dyn HumanoidTask> { task(seed) }),
             recordings: recordings.cloned(),
+            latents: None,
         }
+    }
+
+    /// The same under latents, if there are any.
+    pub fn with_latents(self, latents: Option<LatentDraw>) -> BodyEpisodes {
+        BodyEpisodes { latents, ..self }
     }
 
     /// So many environments at the start of the episodes that evaluations begin with.

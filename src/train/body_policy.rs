@@ -9,11 +9,12 @@ use crate::env::humanoid::task::CpuHumanoidEnv;
 use crate::env::humanoid::task::play::play_episodes;
 use crate::rl::amp::FrozenDiscriminator;
 use anyhow::{Context, Result};
+use std::sync::Arc;
 
 /// What a checkpoint's policy drives, with its discriminator or its low level's, if there is one.
 pub struct BodyPolicy {
     /// Who acts.
-    pub driver: Box<dyn BodyDriver>,
+    pub driver: Arc<dyn BodyDriver>,
     /// The discriminator.
     pub discriminator: Option<FrozenDiscriminator>,
 }
@@ -45,7 +46,7 @@ impl BodyPolicy {
             }
         };
         Ok(BodyPolicy {
-            driver: task.driver(&checkpoint.policy),
+            driver: task.driver(&checkpoint.policy).into(),
             discriminator,
         })
     }

@@ -1,9 +1,10 @@
 //! A simulated body under a policy, step by step, for somebody to watch and to push.
 
+use super::latent_path::{LatentPath, SteeredDriver};
 use super::reference::Reference;
 use crate::container::Section;
 use crate::env::VecEnv;
-use crate::env::humanoid::driver::DriverState;
+use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::env::humanoid::task::CpuHumanoidEnv;
 use crate::env::humanoid::task::play::DrivenStep;
 use crate::gpu::Array;
@@ -36,6 +37,11 @@ impl BodyContext {
             reference: episodes.recordings.as_ref().map(Reference::new),
             episodes,
         }
+    }
+
+    /// Whose playthroughs they are.
+    pub fn episodes(&self) -> &BodyEpisodes {
+        &self.episodes
     }
 
     /// What is simulated.
@@ -92,6 +98,8 @@ pub struct BodyPlaythrough {
     pub reference: Option<usize>,
     /// Positions at which it should be, if the task says so.
     pub wanted: Option<Vec<f32>>,
+    /// The latents that somebody wants; `None` where they change as in training.
+    pub path: Option<LatentPath>,
     observation: Vec<f32>,
     state: Section,
     driver: DriverState,
@@ -116,6 +124,7 @@ impl BodyPlaythrough {
             push: None,
             reference: None,
             wanted: None,
+            path: None,
             observation: vec![0.0; context.env.spec().observation.dim()],
             state: Section::default(),
             driver: DriverState::default(),
@@ -143,9 +152,17 @@ impl BodyPlaythrough {
         }
         let mut step = DrivenStep::new(env);
         let mut driver = self.driver.clone();
-        step.play(env, &*policy.driver, &mut driver);
+        let steered = self.path.as_ref().map(|path| SteeredDriver {
+            driver: &*policy.driver,
+            path,
+        });
+        let acting: &dyn BodyDriver = match &steered {
+            Some(steered) => steered,
+            None => &*policy.driver,
+        };
+        step.play(env, acting, &mut driver);
         if step.ends.host()[0] != termination::RUNNING {
-            return BodyPlaythrough::new(context, self.episode + 1);
+            return self.next_episode(context);
         }
         let mut next = BodyPlaythrough {
             steps: self.steps + 1,
@@ -163,6 +180,32 @@ impl BodyPlaythrough {
             discriminator.map(|discriminator| discriminator.reward(moments, &next.driver.latents));
         next.follow(context);
         Ok(next)
+    }
+
+    /// The start of the next episode; a latent that somebody wants stays.
+    ///
+    /// # Errors
+    /// None: the environment is on the host.
+    pub fn next_episode(&self, context: &mut BodyContext) -> Result<BodyPlaythrough> {
+        let path = self.path.as_ref();
+        Ok(BodyPlaythrough {
+            path: path.map(|path| LatentPath::held(path.end().to_vec())),
+            ..BodyPlaythrough::new(context, self.episode + 1)?
+        })
+    }
+
+    /// The latent of the last step; empty before the first, or where there are none.
+    pub fn latent(&self) -> &[f32] {
+        &self.driver.latents
+    }
+
+    /// Goes to a latent in so many steps, and holds it.
+    pub fn hold(&mut self, latent: Vec<f32>, steps: usize) {
+        let present = &self.driver.latents;
+        self.path = Some(match present.is_empty() {
+            true => LatentPath::held(latent),
+            false => LatentPath::new(present.clone(), latent, self.driver.steps, steps),
+        });
     }
 
     /// Puts the target elsewhere on the ground, m, if the task has one.

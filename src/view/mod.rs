@@ -11,6 +11,9 @@ pub mod crowd;
 mod crowd_shape;
 pub mod debug_draw;
 pub mod image_files;
+pub mod latent_map;
+pub mod latent_path;
+pub mod latent_strips;
 pub mod meshes;
 pub mod painter;
 pub mod playthrough;
@@ -19,6 +22,7 @@ pub mod render_target;
 pub mod renderer;
 pub mod scene;
 pub mod shapes;
+pub mod sphere;
 pub mod strip;
 
 pub use body_crowd::BodyCrowd;

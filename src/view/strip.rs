@@ -20,7 +20,7 @@ use std::sync::Arc;
 /// Size of a picture of the strip, and the gap between two, pixels.
 const SIZE: [u32; 2] = [280, 340];
 const GAP: usize = 4;
-const PICTURES: usize = 7;
+pub(super) const PICTURES: usize = 7;
 /// Nothing balances a body whose drives follow angles: so long after its start it has fallen, s.
 const FALL: f32 = 1.5;
 /// From the front of the body to the camera, rad.
@@ -44,11 +44,13 @@ pub fn strips(
 ) -> Result<[PathBuf; 2]> {
     std::fs::create_dir_all(folder)
         .with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    let mut strip = Strip::new(gpu, model, motion);
+    let mut strip = Strip::new(gpu, model, motion.q(0), SIZE);
     let [replayed, driven] =
         ["replayed", "driven"].map(|what| folder.join(format!("{}-{what}.png", motion.name)));
-    strip.write(&replayed, strip.replayed([0.0, motion.seconds()]))?;
-    strip.write(&driven, strip.driven())?;
+    let shots = strip.replayed(motion, times([0.0, motion.seconds()]));
+    strip.write(&replayed, &shots)?;
+    let shots = strip.driven(motion);
+    strip.write(&driven, &shots)?;
     Ok([replayed, driven])
 }
 
@@ -63,36 +65,41 @@ pub fn film_strip(
     [start, seconds]: [f32; 2],
     path: &Path,
 ) -> Result<()> {
-    let mut strip = Strip::new(gpu, model, motion);
+    let mut strip = Strip::new(gpu, model, motion.q(0), SIZE);
     let end = motion.seconds();
     let start = start.min(end);
-    strip.write(path, strip.replayed([start, (start + seconds).min(end)]))
+    let shots = strip.replayed(motion, times([start, (start + seconds).min(end)]));
+    strip.write(path, &shots)
 }
 
 /// What one picture shows: a scene about a point, and how much there is to either side, m.
-struct Shot {
+pub(super) struct Shot {
     scene: Scene,
     focus: Vec3,
     side: f32,
 }
 
-struct Strip<'a> {
+/// What draws the pictures of a strip.
+pub(super) struct Strip<'a> {
     model: &'a Arc<Model>,
-    motion: &'a MotionClip,
     renderer: Renderer,
     target: RenderTarget,
     camera: Camera,
 }
 
 impl<'a> Strip<'a> {
-    /// Seen from beside the front of the body at its start.
-    fn new(gpu: &Gpu, model: &'a Arc<Model>, motion: &'a MotionClip) -> Strip<'a> {
-        let front = shapes::seen(shapes::poses(model, motion.q(0))[0].rotation * Vec3::X);
+    /// Pictures of `size` pixels from beside the front of a body at positions `start`.
+    pub(super) fn new(
+        gpu: &Gpu,
+        model: &'a Arc<Model>,
+        start: &[f32],
+        size: [u32; 2],
+    ) -> Strip<'a> {
+        let front = shapes::seen(shapes::poses(model, start)[0].rotation * Vec3::X);
         Strip {
             model,
-            motion,
             renderer: Renderer::new(gpu),
-            target: RenderTarget::new(&gpu.setup.device, SIZE),
+            target: RenderTarget::new(&gpu.setup.device, size),
             camera: Camera {
                 yaw: front.x.atan2(front.z) + YAW,
                 ..Camera::default()
@@ -100,10 +107,14 @@ impl<'a> Strip<'a> {
         }
     }
 
-    fn replayed(&self, [start, end]: [f32; 2]) -> Vec<Shot> {
-        let shots = times(end - start).map(|time| {
-            let time = start + time;
-            let recorded = self.recorded(time);
+    /// A motion at some times, s.
+    pub(super) fn replayed(
+        &self,
+        motion: &MotionClip,
+        times: impl IntoIterator<Item = f32>,
+    ) -> Vec<Shot> {
+        let shots = times.into_iter().map(|time| {
+            let recorded = self.recorded(motion, time);
             let mut scene = Scene::default();
             shapes::draw(&mut scene, self.model, &recorded, Vec3::ZERO, Look::Solid);
             Shot {
@@ -115,14 +126,14 @@ impl<'a> Strip<'a> {
         shots.collect()
     }
 
-    fn driven(&self) -> Vec<Shot> {
+    fn driven(&self, motion: &MotionClip) -> Vec<Shot> {
         let aside = self.camera.over_ground(ASIDE);
-        let mut body = Driven::new(self.model, self.motion);
-        let shots = times(FALL.min(self.motion.seconds())).map(|time| {
+        let mut body = Driven::new(self.model, motion);
+        let shots = times([0.0, FALL.min(motion.seconds())]).map(|time| {
             body.until(time);
             let (simulated, recorded) = (
                 shapes::poses(self.model, &body.state.q),
-                self.recorded(time),
+                self.recorded(motion, time),
             );
             let [one, other] = [&simulated, &recorded].map(|poses| shapes::seen(poses[0].position));
             let between = other + aside - one;
@@ -138,29 +149,36 @@ impl<'a> Strip<'a> {
         shots.collect()
     }
 
-    fn recorded(&self, time: f32) -> Vec<Pose> {
-        shapes::poses(self.model, &self.motion.at(self.model, time).0)
+    fn recorded(&self, motion: &MotionClip, time: f32) -> Vec<Pose> {
+        shapes::poses(self.model, &motion.at(self.model, time).0)
+    }
+
+    /// A picture, RGB.
+    ///
+    /// # Errors
+    /// The GPU was lost.
+    pub(super) fn picture(&mut self, shot: &Shot) -> Result<Vec<u8>> {
+        self.camera.follow([shot.focus.x, shot.focus.z], 1.0);
+        self.camera.distance = NEAR + WIDE * shot.side;
+        self.renderer
+            .draw(&shot.scene, None, &self.camera, &self.target);
+        self.target
+            .read(&self.renderer.device, &self.renderer.queue)
     }
 
     /// One picture beside the other.
-    fn write(&mut self, path: &Path, shots: Vec<Shot>) -> Result<()> {
-        let [width, height] = SIZE.map(|side| side as usize);
+    fn write(&mut self, path: &Path, shots: &[Shot]) -> Result<()> {
+        let [width, height] = self.target.size.map(|side| side as usize);
         let total_width = PICTURES * (width + GAP) - GAP;
         let mut strip = vec![255; 3 * total_width * height];
         for (index, shot) in shots.iter().enumerate() {
-            self.camera.follow([shot.focus.x, shot.focus.z], 1.0);
-            self.camera.distance = NEAR + WIDE * shot.side;
-            self.renderer
-                .draw(&shot.scene, None, &self.camera, &self.target);
-            let picture = self
-                .target
-                .read(&self.renderer.device, &self.renderer.queue)?;
+            let picture = self.picture(shot)?;
             let rows = strip.chunks_exact_mut(3 * total_width);
             for (row, pixels) in rows.zip(picture.chunks_exact(3 * width)) {
                 row[3 * index * (width + GAP)..][..3 * width].copy_from_slice(pixels);
             }
         }
-        image_files::png(path, [total_width as u32, SIZE[1]], &strip)
+        image_files::png(path, [total_width as u32, height as u32], &strip)
     }
 }
 
@@ -201,6 +219,7 @@ impl<'a> Driven<'a> {
 }
 
 /// The times of a strip's pictures, s.
-fn times(end: f32) -> impl Iterator<Item = f32> {
-    (0..PICTURES).map(move |picture| end * picture as f32 / (PICTURES - 1) as f32)
+pub(super) fn times([start, end]: [f32; 2]) -> impl Iterator<Item = f32> {
+    let part = |picture: usize| picture as f32 / (PICTURES - 1) as f32;
+    (0..PICTURES).map(move |picture| start + (end - start) * part(picture))
 }

@@ -2,6 +2,7 @@
 
 use super::policies::{Policies, PolicyEntry};
 use super::screen::{PointerAction, Screen};
+use super::skills_panel::{LatentWish, SkillsPanel};
 use super::timeline::Timeline;
 use super::transport::{self, Seek, Transport};
 use crate::env::humanoid::task::DT;
@@ -11,6 +12,7 @@ use crate::view::Camera;
 use crate::view::body_playthrough::{BodyContext, BodyPlaythrough, BodyPush};
 use crate::view::body_scene::{ARROW, BodyExtras, body_scene};
 use crate::view::camera::{FOLLOW, Ray};
+use crate::view::latent_map::LatentMap;
 use crate::view::shapes::{self, seen, simulated};
 use anyhow::{Context, Result};
 use eframe::egui::{self, Ui};
@@ -31,6 +33,8 @@ pub struct BodyViewer {
     transport: Transport,
     camera: Camera,
     extras: BodyExtras,
+    /// Of a policy of skills.
+    skills: Option<SkillsPanel>,
     /// The body that the pointer has hold of, and where the pointer is.
     grip: Option<(usize, Ray)>,
     /// What went wrong last.
@@ -53,6 +57,7 @@ impl BodyViewer {
         let policy = policies.load().context("the run has no checkpoints")??;
         let mut viewer = BodyViewer {
             timeline: Timeline::new(BodyPlaythrough::new(&mut context, 0)?),
+            skills: SkillsPanel::new(&context, &policy),
             policy,
             policies,
             context,
@@ -89,12 +94,18 @@ impl BodyViewer {
         egui::Panel::right("state")
             .default_size(260.0)
             .show(ui, |ui| self.state(ui));
+        self.skills(ui);
         egui::CentralPanel::default()
             .frame(egui::Frame::NONE)
             .show(ui, |ui| self.world(ui));
         if self.transport.playing {
             ui.ctx().request_repaint();
         }
+    }
+
+    /// The map of latents, once it is made.
+    pub fn latent_map(&self) -> Option<&LatentMap> {
+        self.skills.as_ref().and_then(SkillsPanel::map)
     }
 
     /// What has been played.
@@ -139,6 +150,19 @@ impl BodyViewer {
         }
     }
 
+    fn skills(&mut self, ui: &mut Ui) {
+        let Some(skills) = &mut self.skills else {
+            return;
+        };
+        let panel = egui::Panel::left("skills").default_size(250.0);
+        let now = self.timeline.now();
+        match panel.show(ui, |ui| skills.show(ui, now)).inner {
+            Some(LatentWish::Hold(latent, steps)) => self.timeline.change().hold(latent, steps),
+            Some(LatentWish::Change) => self.timeline.change().path = None,
+            None => {}
+        }
+    }
+
     fn state(&mut self, ui: &mut Ui) {
         if let Some(problem) = &self.problem {
             ui.colored_label(ui.visuals().error_fg_color, problem);
@@ -146,13 +170,13 @@ impl BodyViewer {
         if let Some(loaded) = self.policies.show(ui)
             && let Some(policy) = self.succeeded(loaded)
         {
+            self.skills = SkillsPanel::new(&self.context, &policy);
             self.policy = policy;
             self.problem = None;
             self.timeline.change();
         }
         if ui.button("Next episode").clicked() {
-            let next = self.timeline.now().episode + 1;
-            let begun = BodyPlaythrough::new(&mut self.context, next);
+            let begun = self.timeline.now().next_episode(&mut self.context);
             if let Some(first) = self.succeeded(begun) {
                 self.timeline = Timeline::new(first);
                 self.look_at_it(1.0);

@@ -10,6 +10,7 @@ pub mod pace;
 pub mod policies;
 pub mod runners_up;
 pub mod screen;
+pub mod skills_panel;
 pub mod source;
 pub mod timeline;
 pub mod transport;

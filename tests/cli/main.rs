@@ -16,6 +16,7 @@ mod places;
 mod refused;
 mod render;
 mod sim;
+mod skills;
 mod stand;
 mod steering;
 #[cfg(unix)]

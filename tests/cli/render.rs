@@ -3,7 +3,7 @@
 use super::Place;
 
 /// Width, height and RGB of a PNG file.
-fn png(place: &Place, name: &str) -> (u32, u32, Vec<u8>) {
+pub fn png(place: &Place, name: &str) -> (u32, u32, Vec<u8>) {
     let file = std::fs::File::open(place.path(name)).unwrap();
     let decoder = png::Decoder::new(std::io::BufReader::new(file));
     let mut reader = decoder.read_info().unwrap();

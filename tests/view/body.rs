@@ -25,7 +25,7 @@ use footwork::viewer::window::shared;
 use glam::Vec3;
 
 /// A task with few environments, on the performer's motion.
-fn task(name: &str) -> (Config, Box<dyn Task>) {
+pub fn task(name: &str) -> (Config, Box<dyn Task>) {
     let entry = find(name).unwrap();
     let mut config = entry.config(Preset::Fast);
     config.ppo.envs = 4;
@@ -34,7 +34,7 @@ fn task(name: &str) -> (Config, Box<dyn Task>) {
 }
 
 /// What has learned nothing: it keeps the pose that the task rests in.
-fn untrained(config: &Config, task: &dyn Task) -> BodyPolicy {
+pub fn untrained(config: &Config, task: &dyn Task) -> BodyPolicy {
     let envs = task.open(&Device::Cpu, config.ppo.envs, 1).unwrap();
     let learner = task.learner(config, &envs, &Device::Cpu).unwrap();
     let header = Header {
@@ -49,7 +49,7 @@ fn untrained(config: &Config, task: &dyn Task) -> BodyPolicy {
     BodyPolicy::new(checkpoint, config, task).unwrap()
 }
 
-fn open(name: &str) -> Harness<'static, BodyViewer> {
+pub fn open(name: &str) -> Harness<'static, BodyViewer> {
     let (config, task) = task(name);
     let context = BodyContext::new(task.body().unwrap());
     let untrained = PolicyEntry {
@@ -69,12 +69,12 @@ fn open(name: &str) -> Harness<'static, BodyViewer> {
     harness
 }
 
-fn press(harness: &mut Harness<BodyViewer>, name: &str) {
+pub fn press(harness: &mut Harness<BodyViewer>, name: &str) {
     harness.get_by_label(name).click();
     harness.run_steps(3);
 }
 
-fn pointer(harness: &mut Harness<BodyViewer>, pos: Pos2, pressed: bool) {
+pub fn pointer(harness: &mut Harness<BodyViewer>, pos: Pos2, pressed: bool) {
     harness.event(Event::PointerMoved(pos));
     harness.event(Event::PointerButton {
         pos,
@@ -86,7 +86,7 @@ fn pointer(harness: &mut Harness<BodyViewer>, pos: Pos2, pressed: bool) {
 }
 
 /// Keeps what the window shows, for a look.
-fn keep(harness: &mut Harness<BodyViewer>, name: &str) -> Picture {
+pub fn keep(harness: &mut Harness<BodyViewer>, name: &str) -> Picture {
     let drawn = harness.render().expect("a picture");
     let picture = Picture {
         size: [drawn.width(), drawn.height()],

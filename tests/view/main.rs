@@ -4,6 +4,7 @@ mod body;
 mod compare;
 mod crowd;
 mod pictures;
+mod skills;
 mod viewer;
 
 use footwork::env::locomotion::LocomotionTask;

@@ -17,8 +17,19 @@ pub struct DriverState {
     pub kept: Vec<u32>,
 }
 
+impl DriverState {
+    /// The start of an episode of `rows` bodies, whose latents `[rows][latent]` are kept for good.
+    pub fn holding(latents: Vec<f32>, rows: usize) -> DriverState {
+        DriverState {
+            steps: 0,
+            latents,
+            kept: vec![u32::MAX; rows],
+        }
+    }
+}
+
 /// Something that moves simulated bodies by what they observe.
-pub trait BodyDriver {
+pub trait BodyDriver: Send + Sync {
     /// Actions `[rows][action]` for observations `[rows][observation]`. `state` is what the same rows' last
     /// step left, and takes what this one leaves.
     fn act(&self, observation: &[f32], state: &mut DriverState) -> Vec<f32>;
@@ -31,7 +42,7 @@ impl BodyDriver for Policy {
     }
 }
 
-impl<F: Fn(&[f32]) -> Vec<f32>> BodyDriver for F {
+impl<F: Fn(&[f32]) -> Vec<f32> + Send + Sync> BodyDriver for F {
     fn act(&self, observation: &[f32], _: &mut DriverState) -> Vec<f32> {
         self(observation)
     }

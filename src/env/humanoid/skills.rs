@@ -5,6 +5,7 @@ use super::fidelity::{FidelityProbe, FidelityReport};
 use super::imitate::{ImitateTask, evaluate as evaluate_imitation};
 use super::task::play::play_episodes;
 use super::task::{CpuHumanoidEnv, DT};
+use crate::kernels::humanoid::end_episode::LIMIT;
 use crate::kernels::termination::FAILED;
 use crate::physics::motion_library::MotionLibrary;
 use serde::Serialize;
@@ -92,6 +93,38 @@ fn repeatability(
     shares.iter().sum::<f64>() / shares.len().max(1) as f64
 }
 
+/// The clip that a body is most like under each of some latents that are held, in the second after it has settled;
+/// `None` where it falls before that is over. Environments beyond those whose poses are compared have none.
+pub fn clips_under(
+    envs: &mut CpuHumanoidEnv,
+    library: &MotionLibrary,
+    driver: &dyn BodyDriver,
+    latents: Vec<f32>,
+) -> Vec<Option<usize>> {
+    let second = (1.0 / DT).round() as usize;
+    let settled = SETTLED_S * second;
+    for episode in &mut envs.episodes {
+        episode[LIMIT] = (settled + second) as f32;
+    }
+    let mut probe = FidelityProbe::new(library, envs);
+    let start = DriverState::holding(latents, envs.batch.worlds.len());
+    let found = play_episodes(envs, driver, start, |envs, running, state| {
+        if state.steps > settled {
+            probe.observe(envs, running);
+        }
+    });
+    let nearest = probe.nearest_clips().into_iter().zip(found.ends);
+    nearest
+        .map(|(clips, end)| clips.first().copied().filter(|_| end != FAILED))
+        .collect()
+}
+
+/// The most frequent of the nearest clips of an episode's seconds: of those after it has settled, if it gets so far.
+pub fn settled_clip(nearest: &[usize]) -> Option<usize> {
+    let settled = nearest.get(SETTLED_S..).filter(|clips| !clips.is_empty());
+    most_frequent(settled.unwrap_or(nearest)).map(|(clip, _)| clip)
+}
+
 /// Gives every so many rows the latent of the first of them.
 fn repeat(latents: &mut [f32], rows: usize, every: usize) {
     let dim = latents.len() / rows;
@@ -104,9 +137,14 @@ fn repeat(latents: &mut [f32], rows: usize, every: usize) {
 
 /// How large a part the most frequent number has; `None` of nothing.
 fn share_of_most_frequent(numbers: &[usize]) -> Option<f64> {
-    let count = |number: &usize| numbers.iter().filter(|other| *other == number).count();
-    let most = numbers.iter().map(count).max()?;
-    Some(most as f64 / numbers.len() as f64)
+    most_frequent(numbers).map(|(_, most)| most as f64 / numbers.len() as f64)
+}
+
+/// The most frequent number, and how often it is there; `None` of nothing.
+fn most_frequent(numbers: &[usize]) -> Option<(usize, usize)> {
+    let count = |number: usize| numbers.iter().filter(|other| **other == number).count();
+    let counts = numbers.iter().map(|&number| (number, count(number)));
+    counts.max_by_key(|&(_, count)| count)
 }
 
 #[cfg(test)]
@@ -124,5 +162,12 @@ mod tests {
     fn shares_of_the_most_frequent() {
         assert_eq!(share_of_most_frequent(&[]), None);
         assert_eq!(share_of_most_frequent(&[3, 1, 3, 2]), Some(0.5));
+    }
+
+    #[test]
+    fn a_body_that_falls_before_it_settles_is_judged_by_what_it_did() {
+        assert_eq!(settled_clip(&[]), None);
+        assert_eq!(settled_clip(&[4]), Some(4));
+        assert_eq!(settled_clip(&[4, 4, 4, 7, 7]), Some(7));
     }
 }

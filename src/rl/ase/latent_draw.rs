@@ -4,8 +4,9 @@ use super::{Ase, LowLevel};
 use crate::kernels::learn::advance_latents::to_sphere;
 use crate::kernels::rng::{gaussian, random4};
 
-/// Random stream of the clips' latents.
-const STREAM: u32 = 0x434c_4950;
+/// Random streams: of the clips' latents, and of any.
+const CLIPS: u32 = 0x434c_4950;
+const ANY: u32 = 0x414e_5953;
 
 /// Which latents there are, and how likely each is.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +29,7 @@ impl LatentDraw {
         let mut sum = 0.0;
         let centre = |(clip, share): (usize, &f32)| {
             sum += share;
-            [vec![sum], clip_latent(clip, dim)].concat()
+            [vec![sum], direction(clip, dim, CLIPS)].concat()
         };
         let centres = match ase.low_level {
             LowLevel::Ase => Vec::new(),
@@ -46,11 +47,17 @@ impl LatentDraw {
     pub fn clips(&self) -> impl Iterator<Item = &[f32]> {
         self.centres.chunks_exact(1 + self.dim).map(|row| &row[1..])
     }
+
+    /// So many latents of all directions, the same ones every time.
+    pub fn any(&self, count: usize) -> Vec<Vec<f32>> {
+        let latents = (0..count).map(|number| direction(number, self.dim, ANY));
+        latents.collect()
+    }
 }
 
-/// A direction that does not depend on how many clips there are.
-fn clip_latent(clip: usize, dim: usize) -> Vec<f32> {
-    let number = |at: usize| gaussian(random4(0, clip as u32, at as u32, STREAM));
+/// A direction that depends on its number alone, and not on how many there are.
+fn direction(number: usize, dim: usize, stream: u32) -> Vec<f32> {
+    let number = |at: usize| gaussian(random4(0, number as u32, at as u32, stream));
     let mut latent: Vec<f32> = (0..dim).map(number).collect();
     to_sphere(&mut latent);
     latent

@@ -219,6 +219,7 @@ impl<T: MotionTask> Task for MotionTraining<T> {
     fn body(&self) -> Option<BodyEpisodes> {
         let (task, library) = (self.task.clone(), self.library.clone());
         let judged = move |seed| task.judged(&library, seed);
-        Some(BodyEpisodes::new(judged, Some(&self.library)))
+        let episodes = BodyEpisodes::new(judged, Some(&self.library));
+        Some(episodes.with_latents(self.task.latents(&self.library)))
     }
 }

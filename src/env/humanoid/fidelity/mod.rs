@@ -17,8 +17,8 @@ pub use pose_track::PoseTrack;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Episodes whose poses are compared with the recordings.
-const COMPARED: usize = 64;
+/// Episodes whose poses are compared with the recordings: the first of a batch.
+pub const COMPARED: usize = 64;
 /// Frames of a stretch that is compared as one: a second.
 const STRETCH: usize = 30;
 /// A clip is covered if it is nearest to this share of the stretches.
