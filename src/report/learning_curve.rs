@@ -168,14 +168,13 @@ const WEIGHT_PANEL: Panel = Panel {
     format: brief,
 };
 
-/// The panels of a training: those of every one, and those of its style, if it has one.
+/// The panels of a training: those of every one, and those of its style that have something to show. The weight
+/// comes before them.
 fn panels(points: &[Point]) -> Vec<&'static Panel> {
-    let any = |of: fn(&Point) -> bool| points.iter().any(of);
-    let styled = any(|point| point.style_reward.is_some());
-    let weighed = any(|point| point.task_weight.is_some());
-    let weight = weighed.then_some(&WEIGHT_PANEL);
-    let style = STYLE_PANELS.iter().filter(|_| styled);
-    PANELS.iter().chain(weight).chain(style).collect()
+    let shows = |panel: &&'static Panel| points.iter().any(|point| (panel.value)(point).is_some());
+    let styled = points.iter().any(|point| point.style_reward.is_some());
+    let more = std::iter::once(&WEIGHT_PANEL).chain(STYLE_PANELS.iter().filter(|_| styled));
+    PANELS.iter().chain(more.filter(shows)).collect()
 }
 
 /// Draws the curves, with `marks` and the beginnings of `levels` through all panels, as a
