@@ -92,6 +92,7 @@ pub struct BodyPlaythrough {
     pub reference: Option<usize>,
     /// Positions at which it should be, if the task says so.
     pub wanted: Option<Vec<f32>>,
+    /// `[rows][observation]`
     observation: Vec<f32>,
     state: Section,
     driver: DriverState,
@@ -105,7 +106,9 @@ impl BodyPlaythrough {
     pub fn new(context: &mut BodyContext, episode: u32) -> Result<BodyPlaythrough> {
         context.env = context.episodes.open(episode);
         context.opened = episode;
-        context.env.episodes[0][LIMIT] = f32::MAX;
+        let agents = context.env.episodes.iter_mut();
+        agents.for_each(|episode| episode[LIMIT] = f32::MAX);
+        let rows = context.env.spec().rows();
         let mut first = BodyPlaythrough {
             episode,
             steps: 0,
@@ -116,7 +119,7 @@ impl BodyPlaythrough {
             push: None,
             reference: None,
             wanted: None,
-            observation: vec![0.0; context.env.spec().observation.dim()],
+            observation: vec![0.0; rows * context.env.spec().observation.dim()],
             state: Section::default(),
             driver: DriverState::default(),
         };

@@ -3,12 +3,14 @@
 //! episodes that it ended. [`episode_sums`] collects statistics. The tasks `punch` and `joystick` have
 //! [`place_target`], [`punch_reward`] and [`punch_observe`] over a [`punch_state`];
 //! `track` has [`begin_track`], [`track_reward`] and [`track_observe`] over a [`track_state`].
+//! [`fallen`] says who lies.
 
 pub mod action_targets;
 pub mod begin_track;
 pub mod draw_starts;
 pub mod end_episode;
 pub mod episode_sums;
+pub mod fallen;
 pub mod place_target;
 pub mod punch_observe;
 pub mod punch_reward;

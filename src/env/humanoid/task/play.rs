@@ -8,17 +8,30 @@ use crate::gpu::Array;
 use crate::kernels::termination;
 use crate::physics::motion_clip::MotionClip;
 
-/// Steps environments one episode long. `after` is shown every step, with how it ended for each, and says
+/// Steps environments one episode long. `after` is shown every step, with how it ended for each agent, and says
 /// whether to go on.
 pub fn play(
     envs: &mut CpuHumanoidEnv,
     driver: &dyn BodyDriver,
+    after: impl FnMut(&CpuHumanoidEnv, &[u32]) -> bool,
+) {
+    let mut state = DriverState::default();
+    play_by(
+        envs,
+        |observation| driver.act(observation, &mut state),
+        after,
+    );
+}
+
+/// [`play`] by whoever decides on actions `[rows][action]` for observations `[rows][observation]`.
+fn play_by(
+    envs: &mut CpuHumanoidEnv,
+    mut act: impl FnMut(&[f32]) -> Vec<f32>,
     mut after: impl FnMut(&CpuHumanoidEnv, &[u32]) -> bool,
 ) {
     let mut step = DrivenStep::new(envs);
-    let mut state = DriverState::default();
     for _ in 0..envs.task().rules().steps() {
-        step.play(envs, driver, &mut state);
+        step.play_by(envs, &mut act);
         if !after(envs, step.ends.host()) {
             return;
         }
@@ -57,8 +70,12 @@ impl DrivenStep {
         driver: &dyn BodyDriver,
         state: &mut DriverState,
     ) {
+        self.play_by(envs, |observation| driver.act(observation, state));
+    }
+
+    fn play_by(&mut self, envs: &mut CpuHumanoidEnv, act: impl FnOnce(&[f32]) -> Vec<f32>) {
         envs.observe(&mut self.observation, 0);
-        let action = Array::Host(driver.act(self.observation.host(), state));
+        let action = Array::Host(act(self.observation.host()));
         let out = Transition {
             step: 0,
             reward: &mut self.reward,
@@ -70,35 +87,49 @@ impl DrivenStep {
     }
 }
 
-/// How the first episode of each environment went.
+/// How the first episode of each agent went.
 pub struct Episodes {
-    /// How it ended, `[envs]`.
+    /// How it ended, `[rows]`.
     pub ends: Vec<u32>,
-    /// The sums of its statistics, `[envs][stats]`.
+    /// The sums of its statistics, `[rows][stats]`.
     pub sums: Vec<Vec<f32>>,
 }
 
-/// Plays one episode of each environment to its end. `after` is shown every step, with those still in
+/// Plays one episode of each environment to its end. `after` is shown every step, with the agents still in
 /// their first episode.
 pub fn play_episodes(
     envs: &mut CpuHumanoidEnv,
     driver: &dyn BodyDriver,
+    after: impl FnMut(&CpuHumanoidEnv, &[bool]),
+) -> Episodes {
+    let mut state = DriverState::default();
+    play_episodes_by(
+        envs,
+        |observation| driver.act(observation, &mut state),
+        after,
+    )
+}
+
+/// [`play_episodes`] by whoever decides on actions `[rows][action]` for observations `[rows][observation]`.
+pub fn play_episodes_by(
+    envs: &mut CpuHumanoidEnv,
+    act: impl FnMut(&[f32]) -> Vec<f32>,
     mut after: impl FnMut(&CpuHumanoidEnv, &[bool]),
 ) -> Episodes {
-    let count = envs.spec().envs;
+    let count = envs.spec().rows();
     let mut found = Episodes {
         ends: vec![termination::RUNNING; count],
         sums: vec![Vec::new(); count],
     };
     let mut running = vec![true; count];
-    play(envs, driver, |envs, ends| {
-        for (env, &end) in ends.iter().enumerate() {
-            if running[env] && end != termination::RUNNING {
+    play_by(envs, act, |envs, ends| {
+        for (row, &end) in ends.iter().enumerate() {
+            if running[row] && end != termination::RUNNING {
                 let stats = envs.stat_names().len();
-                let episode = &envs.episodes[env];
-                running[env] = false;
-                found.ends[env] = end;
-                found.sums[env] = episode[episode.len() - stats..].to_vec();
+                let episode = &envs.episodes[row];
+                running[row] = false;
+                found.ends[row] = end;
+                found.sums[row] = episode[episode.len() - stats..].to_vec();
             }
         }
         after(envs, &running);
