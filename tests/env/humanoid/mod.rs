@@ -1,3 +1,4 @@
+mod boxing;
 mod mirrored;
 mod stand;
 mod style;

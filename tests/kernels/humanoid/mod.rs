@@ -2,6 +2,7 @@
 //! Oracle: the twins, which are what the CPU plays with. Bar: what is drawn or counted equal bit for bit;
 //! else a few roundings.
 
+mod boxing;
 mod punch;
 mod track;
 
