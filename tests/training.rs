@@ -163,6 +163,51 @@ fn small_among_obstacles(steps: u64) -> Config {
     config
 }
 
+/// Skills of few environments; latents live longer than an update.
+fn small_skills(low_level: &str, steps: u64) -> Config {
+    let mut config = preset("skills", Preset::Fast);
+    let ppo = &mut config.ppo;
+    (ppo.envs, ppo.rollout_length, ppo.minibatch_size, ppo.epochs) = (16, 8, 64, 1);
+    ppo.network.hidden = vec![16];
+    (config.steps, config.checkpoint_every) = (steps, 128);
+    for (key, value) in [("minibatch_size", 32), ("steps", 2), ("replay_capacity", 256)] {
+        let set = config.set(&format!("amp.{key}"), value.into());
+        set.expect("a key of the discriminator");
+    }
+    let set = config.set("ase.low_level", low_level.into());
+    set.expect("a low level");
+    let set = config.set("task.episode_s", 0.5.into());
+    set.expect("a length of episodes");
+    config
+}
+
+/// Trains skills without a stop, and with a stop in the middle of latents' lives.
+fn skills_resume(low_level: &str, device: Choice) {
+    let place = Place(tempfile::tempdir().expect("a folder"));
+    let (clips, _) = synthetic::perform_boxing(1, 0.2);
+    footwork::motion::bvh::write(&place.path("clip.bvh"), &clips[0]).expect("a file");
+    let train = |steps: u64, run: &str| {
+        let mut config = small_skills(low_level, steps);
+        config.data = Some(place.path("clip.bvh"));
+        let trained = place.train_on(config, device, run);
+        trained.expect("a training");
+        place.last(run)
+    };
+    let whole = train(512, "whole");
+    assert!(whole.sections != train(256, "halves").sections);
+    assert!(whole.sections == train(512, "halves").sections);
+}
+
+#[test]
+fn skills_resume_bit_for_bit_on_the_cpu() {
+    skills_resume("ase", Choice::Cpu);
+}
+
+#[test]
+fn skills_resume_bit_for_bit_on_lavapipe() {
+    skills_resume("per-clip", Choice::Lavapipe);
+}
+
 #[test]
 fn repeats_and_resumes_among_obstacles_on_the_cpu() {
     repeats_and_resumes(small_among_obstacles, 4 * 512, Choice::Cpu);

@@ -1,10 +1,11 @@
 // Reward for moving in the style of recordings. One invocation a sample.
 //
-// output  [samples][heads] of the discriminator
+// output  [samples][outputs] of the discriminator, whose heads come first
 // reward  [samples]
 
 struct Params {
     samples: u32,
+    outputs: u32,
     heads: u32,
     hinge: u32, // 1 for the hinge loss, 0 for binary cross-entropy
 }
@@ -21,7 +22,7 @@ fn style_reward(@builtin(global_invocation_id) id: vec3u) {
     if (sample >= params.samples) { return; }
     var sum = 0.0;
     for (var head = 0u; head < params.heads; head++) {
-        let out = output[sample * params.heads + head];
+        let out = output[sample * params.outputs + head];
         let taken = 1.0 - 1.0 / (1.0 + exp(-out));
         sum += select(-log(max(taken, LEAST)), clamp(out, -1.0, 1.0), params.hinge == 1u);
     }

@@ -149,6 +149,7 @@ struct Part {
     step: usize,
     observation: Array,
     reward: Array,
+    style_reward: Array,
     termination: Array<u32>,
     group: Array<u32>,
     final_observation: Array,
@@ -166,6 +167,7 @@ impl Part {
             step: 0,
             observation: Array::zeroed(device, observation),
             reward: Array::zeroed(device, rows),
+            style_reward: Array::zeroed(device, rows),
             termination: Array::zeroed(device, rows),
             group: Array::zeroed(device, rows),
             final_observation: Array::zeroed(device, spec.final_steps(1) * observation),
@@ -177,6 +179,7 @@ impl Part {
         let out = Transition {
             step: 0,
             reward: &mut self.reward,
+            style_reward: &mut self.style_reward,
             termination: &mut self.termination,
             group: &mut self.group,
             final_observation: &mut self.final_observation,

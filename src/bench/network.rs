@@ -9,7 +9,7 @@ use crate::kernels::rng::{gaussian, random4};
 use crate::nn::layer::Activation;
 use crate::nn::observation::ObservationSpec;
 use crate::nn::{ActorCritic, Adam, Engine, NetworkConfig, Rows};
-use crate::rl::ppo::loss::{LossCoefficients, PpoLoss, SUMS};
+use crate::rl::ppo::loss::{Diversity, LossCoefficients, PpoLoss, SUMS};
 use crate::train::config::Preset;
 use crate::train::tasks::REGISTRY;
 use anyhow::Result;
@@ -176,6 +176,8 @@ impl<'a> Pass<'a> {
             values: networks.critic.outputs(),
             log_std: networks.log_std(),
             old_log_std: &self.old_log_std,
+            observation: networks.actor.observation().dim(),
+            diversity: Diversity::default(),
             coefficients: LossCoefficients {
                 clip: 0.2,
                 value_clip: 0.0,

@@ -7,8 +7,10 @@ use super::train::{Choices, Opened, on_interrupt};
 use anyhow::Result;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use footwork::train::ablation::Comparison;
-use footwork::train::task::{Ablation, TaskEntry};
+use footwork::train::checkpoint::Checkpoint;
+use footwork::train::comparison::{Comparison, Contestant, Outcome};
+use footwork::train::config::Config;
+use footwork::train::task::{Ablation, Task, TaskEntry};
 use footwork::train::tasks::REGISTRY;
 use std::path::PathBuf;
 
@@ -63,22 +65,48 @@ impl Ablate {
         let out = self.out.unwrap_or_else(|| ablation.folder.into());
         let start = self.choices.start()?;
         let comparison = Comparison {
+            title: "ablation",
             entry,
-            ablation,
-            base: &config,
-            task: &*task,
+            contestants: contestants(ablation, &config, &*task, start.as_ref())?,
+            measures: ablation.measures,
+            rates: ablation.rates,
             device: &device,
             out: &out,
-            start: start.as_ref(),
         };
         let mut progress = Progress::new(&config);
         let outcomes = comparison.run(self.seeds, interrupted, &mut progress)?;
         drop(progress);
-        match outcomes {
-            Some(outcomes) => show!("{}", comparison.summary(&outcomes)),
-            None => say!("go on with the same command"),
-        }
-        say!("see {}", out.display());
+        tell(&comparison, outcomes.as_deref());
         Ok(())
     }
+}
+
+/// The variants of an ablation, with what they share.
+fn contestants<'a>(
+    ablation: &Ablation,
+    base: &Config,
+    task: &dyn Task,
+    start: Option<&'a Checkpoint>,
+) -> Result<Vec<Contestant<'a>>> {
+    let variants = ablation.variants.iter();
+    let contestant = variants.map(|variant| {
+        let mut config = base.clone();
+        config.task.settings.extend((variant.changes)());
+        Ok(Contestant {
+            name: variant.name,
+            task: task.with_choices(&config)?,
+            config,
+            start,
+        })
+    });
+    contestant.collect()
+}
+
+/// Says what came of a comparison.
+pub fn tell(comparison: &Comparison, outcomes: Option<&[Outcome]>) {
+    match outcomes {
+        Some(outcomes) => show!("{}", comparison.summary(outcomes)),
+        None => say!("go on with the same command"),
+    }
+    say!("see {}", comparison.out.display());
 }

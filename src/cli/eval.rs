@@ -1,11 +1,11 @@
 //! `footwork eval`.
 
 use super::Usage;
-use super::run::Run;
+use super::run::{Moved, Run};
 use super::say::{say, show};
 use anyhow::Result;
 use clap::Args;
-use footwork::train::body_policy::BodyPolicy;
+use footwork::train::body_policy::{BodyPolicy, StyleReport};
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::evaluation::EvalOptions;
 use std::path::PathBuf;
@@ -45,6 +45,10 @@ pub struct Eval {
     /// to be seen, with each remedy
     #[arg(long)]
     motion_quality: bool,
+    /// Rate a run of skills: what its latents lead to; of a run that steers a low level, where that is now, if it
+    /// has been moved
+    #[arg(long, value_name = "RUN")]
+    skills: Option<Option<PathBuf>>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -55,7 +59,16 @@ impl Eval {
         if self.episodes == 0 || self.episodes > 1_000_000 {
             return Err(Usage("--episodes must be from 1 to 1000000".into()).into());
         }
-        let run = Run::open(&self.run, self.data.as_deref())?;
+        let moved = Moved {
+            data: self.data.as_deref(),
+            skills: self.skills.as_ref().and_then(|run| run.as_deref()),
+        };
+        let run = Run::open(&self.run, moved)?;
+        if matches!(self.skills, Some(None)) && run.config.ase.is_none() {
+            let (path, task) = (self.run.display(), &run.config.task.name);
+            let why = format!("--skills: {path} is a run of `{task}`, which has no skills");
+            return Err(Usage(why).into());
+        }
         let checkpoint = run.checkpoint(&run.path)?;
         let wanted = EvalOptions {
             episodes: self.episodes,
@@ -65,9 +78,13 @@ impl Eval {
         };
         let mut report = run.task.report(&checkpoint.policy, &wanted)?;
         let steps = checkpoint.header.steps;
-        if let Some(style) = self.style(&run, checkpoint)? {
-            report.json["style"] = style.into();
-            report.text += &format!("style reward {style:.2} a step\n");
+        if let Some(found) = self.style(&run, checkpoint)? {
+            report.json["style"] = found.style.into();
+            report.text += &format!("style reward {:.2} a step\n", found.style);
+            if let Some(cosine) = found.encoder_cosine {
+                report.json["encoder_cosine"] = cosine.into();
+                report.text += &format!("the encoder finds latents with a cosine of {cosine:.2}\n");
+            }
         }
         match self.json {
             true => say!("{}", report.json),
@@ -82,11 +99,11 @@ impl Eval {
     }
 
     /// What a run's discriminator says of a body's first episodes.
-    fn style(&self, run: &Run, checkpoint: Checkpoint) -> Result<Option<f64>> {
+    fn style(&self, run: &Run, checkpoint: Checkpoint) -> Result<Option<StyleReport>> {
         let Some(episodes) = run.task.body() else {
             return Ok(None);
         };
         let mut envs = episodes.open_all(self.episodes.min(STYLE_EPISODES));
-        Ok(BodyPolicy::new(checkpoint, &run.config, &*run.task)?.mean_style(&mut envs))
+        Ok(BodyPolicy::new(checkpoint, &run.config, &*run.task)?.judged(&mut envs))
     }
 }

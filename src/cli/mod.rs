@@ -3,6 +3,7 @@
 mod ablate;
 #[cfg(feature = "report")]
 mod bench;
+mod compare;
 mod data;
 mod eval;
 #[cfg(feature = "viewer")]
@@ -39,6 +40,8 @@ enum Command {
     Train(train::Train),
     /// Train variants of a task side by side
     Ablate(ablate::Ablate),
+    /// Train a policy that acts itself and one that steers skills, side by side
+    Compare(compare::Compare),
     /// Evaluate a trained policy on a fixed set of episodes
     Eval(eval::Eval),
     /// Open a window on a trained policy, or on motion
@@ -67,6 +70,7 @@ impl Command {
         match self {
             Command::Train(train) => train.run(),
             Command::Ablate(ablate) => ablate.run(),
+            Command::Compare(compare) => compare.run(),
             Command::Eval(eval) => eval.run(),
             #[cfg(feature = "viewer")]
             Command::Play(play) => play.run(),

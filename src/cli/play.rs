@@ -1,6 +1,6 @@
 //! `footwork play`.
 
-use super::run::Run;
+use super::run::{Moved, Run};
 use super::say::tell;
 use anyhow::Result;
 use clap::Args;
@@ -27,6 +27,9 @@ pub struct Play {
     /// Motion to browse and to steer by hand; with RUN, where the run's motion is now
     #[arg(long, value_name = "DIR|FILE")]
     data: Option<PathBuf>,
+    /// Where the low level is now that the run steers, if it has been moved
+    #[arg(long, value_name = "RUN", requires = "run")]
+    skills: Option<PathBuf>,
 }
 
 impl Play {
@@ -38,7 +41,11 @@ impl Play {
     }
 
     fn policy(&self, run: &std::path::Path) -> Result<()> {
-        let run = Arc::new(Run::open(run, self.data.as_deref())?);
+        let moved = Moved {
+            data: self.data.as_deref(),
+            skills: self.skills.as_deref(),
+        };
+        let run = Arc::new(Run::open(run, moved)?);
         run.checkpoint(&run.path)?;
         let title = format!("footwork: {}", run.folder.path().display());
         if let Some(body) = run.task.body() {

@@ -79,16 +79,21 @@ impl Observer for Progress {
     }
 }
 
-/// The style reward of a step, and how many of the agents' windows and of the recorded ones the discriminator
-/// recognised; nothing where there is none.
+/// The style reward of a step, the task's weight if a rule finds it, how many of the agents' windows and of the recorded
+/// ones the discriminator recognised if it learns, and falls; nothing where there is no style.
 fn style(row: &UpdateMetrics) -> String {
     let Some(reward) = row.rate("style_reward") else {
         return String::new();
     };
-    let [agents, recorded] =
-        ["agent_accuracy", "recorded_accuracy"].map(|name| 100.0 * row.rate(name).unwrap_or(0.0));
-    let fall = 100.0 * row.rate("fall").unwrap_or(0.0);
-    format!("  style {reward:.2}  recognised {agents:.0} / {recorded:.0} %  fall {fall:>3.0} %")
+    let percent = |name: &str| row.rate(name).map(|share| 100.0 * share);
+    let weight = row.rate("task_weight");
+    let weight = weight.map_or(String::new(), |weight| format!("  task weight {weight:.2}"));
+    let recognised = percent("agent_accuracy").zip(percent("recorded_accuracy"));
+    let recognised = recognised.map_or(String::new(), |(agents, recorded)| {
+        format!("  recognised {agents:.0} / {recorded:.0} %")
+    });
+    let fall = percent("fall").unwrap_or(0.0);
+    format!("  style {reward:.2}{weight}{recognised}  fall {fall:>3.0} %")
 }
 
 impl Drop for Progress {

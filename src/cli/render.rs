@@ -1,7 +1,7 @@
 //! `footwork render`.
 
 use super::Usage;
-use super::run::Run;
+use super::run::{Moved, Run};
 use super::say::say;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
@@ -37,6 +37,9 @@ pub struct Render {
     /// Where the run's motion is now, if it has been moved
     #[arg(long, value_name = "DIR|FILE")]
     data: Option<PathBuf>,
+    /// Where the low level is now that the run steers, if it has been moved
+    #[arg(long, value_name = "RUN")]
+    skills: Option<PathBuf>,
     /// Which of the evaluation's episodes
     #[arg(
         long,
@@ -131,7 +134,11 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 impl Render {
     pub fn run(self) -> Result<()> {
         let output = self.check()?;
-        let run = Run::open(&self.run, self.data.as_deref())?;
+        let moved = Moved {
+            data: self.data.as_deref(),
+            skills: self.skills.as_deref(),
+        };
+        let run = Run::open(&self.run, moved)?;
         let policy = run.checkpoint(&run.path)?.policy;
         let gpu = Gpu::drawing()?;
         if let Some(body) = run.task.body() {

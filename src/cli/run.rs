@@ -1,5 +1,6 @@
 //! A trained run, opened.
 
+use super::Usage;
 use anyhow::{Context, Result};
 use footwork::env::EnvSpec;
 use footwork::train::checkpoint::{Checkpoint, CheckpointError};
@@ -25,13 +26,13 @@ pub struct Run {
 }
 
 impl Run {
-    /// Opens a run's folder, or one of its checkpoints; its motion is where it was, or at `moved`.
-    pub fn open(run: &Path, moved: Option<&Path>) -> Result<Run> {
+    /// Opens a run's folder, or one of its checkpoints; what it was trained with is where it was, or has moved.
+    pub fn open(run: &Path, moved: Moved) -> Result<Run> {
         let (folder, path) = locate(run)?;
         let mut config = config_of(&folder)?;
         let entry = find(&config.task.name)?;
+        moved.find(&mut config)?;
         let spec = entry.check(&config)?;
-        find_data(&mut config, moved)?;
         // What is to be said of the data was said when the training started.
         let task = (entry.load)(&config)?.task;
         Ok(Run {
@@ -63,18 +64,37 @@ impl Run {
     }
 }
 
-/// Makes sure that a run's motion is where its configuration says, or at `moved`.
-pub fn find_data(config: &mut Config, moved: Option<&Path>) -> Result<()> {
-    if let Some(moved) = moved {
-        // A run must find its data again from any folder.
-        config.data = Some(std::path::absolute(moved)?);
-    } else if let Some(gone) = config.data.as_deref().filter(|path| !path.exists()) {
-        anyhow::bail!(
-            "the motion that the run was trained with is gone: it was {}; say where it is now with --data",
-            gone.display()
-        );
+/// Where the files are now that a run was trained with, if they have been moved.
+#[derive(Clone, Copy)]
+pub struct Moved<'a> {
+    pub data: Option<&'a Path>,
+    pub skills: Option<&'a Path>,
+}
+
+impl Moved<'_> {
+    /// Makes sure that a run's motion and its low level are where its configuration says, or where they are said to
+    /// have been moved to.
+    pub fn find(&self, config: &mut Config) -> Result<()> {
+        if self.skills.is_some() && config.skills.is_none() {
+            let why = "the run steers no low level: leave out --skills";
+            return Err(Usage(why.into()).into());
+        }
+        for (what, place, moved, option) in [
+            ("motion", &mut config.data, self.data, "--data"),
+            ("low level", &mut config.skills, self.skills, "--skills"),
+        ] {
+            if let Some(moved) = moved {
+                // A run must find them again from any folder.
+                *place = Some(std::path::absolute(moved)?);
+            } else if let Some(gone) = place.as_deref().filter(|path| !path.exists()) {
+                anyhow::bail!(
+                    "the {what} that the run was trained with is gone: it was {}; say where it is now with {option}",
+                    gone.display()
+                );
+            }
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// The run's folder, and the checkpoint: the given one, or the last of a given folder.

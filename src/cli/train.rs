@@ -2,7 +2,7 @@
 
 use super::Usage;
 use super::progress::Progress;
-use super::run::{find_data, locate};
+use super::run::{Moved, locate};
 use super::say::{say, tell};
 #[cfg(feature = "viewer")]
 use super::watch::watched;
@@ -11,12 +11,14 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use footwork::env::EnvSpec;
 use footwork::gpu::{Choice, Device};
+use footwork::rl::ase::LowLevel;
 use footwork::rl::rollout::check_fits;
+use footwork::rl::task_weight::WeightRule;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Preset};
 use footwork::train::memory;
 use footwork::train::metrics;
-use footwork::train::run_dir::{RunDir, Summary};
+use footwork::train::run_dir::{RunDir, Summary, checkpoint_of};
 use footwork::train::task::{Task, TaskEntry};
 use footwork::train::tasks::{REGISTRY, config_of, find};
 use footwork::train::trainer::{Training, train};
@@ -64,10 +66,28 @@ pub struct Train {
         help_heading = "Among obstacles"
     )]
     success_bonus: Option<f64>,
+    /// How the task's reward weighs beside the style's: --set task_weight.rule=RULE
+    #[arg(
+        long,
+        value_name = "RULE",
+        value_enum,
+        conflicts_with = "resume",
+        help_heading = "In the style of recordings"
+    )]
+    task_weight: Option<WeightRule>,
+    /// How latents come to mean movements, for `skills`: --set ase.low_level=WAY
+    #[arg(
+        long,
+        value_name = "WAY",
+        value_enum,
+        conflicts_with = "resume",
+        help_heading = "In the style of recordings"
+    )]
+    low_level: Option<LowLevel>,
 }
 
 /// What every kind of training may be asked for.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct Choices {
     /// A folder of BVH files, one BVH file, or a database file; for simulated bodies also DeepMimic's
     /// recordings, or a motion list in TOML [default: synthetic motion]
@@ -85,6 +105,10 @@ pub struct Choices {
     /// Metres of one unit of BVH files, for simulated bodies [default: found from the length of the legs]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     unit: Option<f32>,
+    /// Learn to steer the skills of a low level, for `punch` and `joystick`: a run of `skills`, or one of its
+    /// checkpoints; with --resume, where it is now
+    #[arg(long, value_name = "RUN")]
+    pub skills: Option<PathBuf>,
     /// Begin with what another run of a simulated body has learned: its folder, or one of its checkpoints
     #[arg(long, value_name = "RUN")]
     from: Option<PathBuf>,
@@ -197,6 +221,15 @@ impl Train {
         if self.no_curriculum {
             config.set("task.curriculum", false.into())?;
         }
+        match (&mut config.ase, self.low_level) {
+            (Some(ase), Some(low_level)) => ase.low_level = low_level,
+            (None, Some(_)) => {
+                let why = format!("--low-level is for `skills`: `{}` has no latents", entry.name);
+                return Err(Usage(why).into());
+            }
+            (_, None) => {}
+        }
+        config.task_weight.rule = self.task_weight.unwrap_or(config.task_weight.rule);
         if let Some(bonus) = self.success_bonus {
             config.set("task.success_bonus", bonus.into())?;
         }
@@ -206,7 +239,11 @@ impl Train {
     /// The configuration of a run that goes on, whose data may have moved.
     fn same(&self, run: &RunDir, entry: &TaskEntry) -> Result<Config> {
         let mut config = same_task(run, entry)?;
-        find_data(&mut config, self.choices.data.as_deref())?;
+        let moved = Moved {
+            data: self.choices.data.as_deref(),
+            skills: self.choices.skills.as_deref(),
+        };
+        moved.find(&mut config)?;
         if let Some(folder) = &self.choices.data_folder {
             config.data_folder = Some(std::path::absolute(folder)?);
         }
@@ -228,19 +265,15 @@ impl Choices {
         let Some(run) = &self.from else {
             return Ok(None);
         };
-        let path = match run.is_file() {
-            true => run.clone(),
-            false => RunDir::open(run)?.last()?,
-        };
-        Ok(Some(Checkpoint::load(&path)?))
+        Ok(Some(Checkpoint::load(&checkpoint_of(run)?)?))
     }
 
     /// Preset, changed by the file, changed by the options.
     pub fn config(&self, entry: &TaskEntry) -> Result<Config> {
-        let preset = self.preset.unwrap_or_default();
+        let (preset, steers) = (self.preset.unwrap_or_default(), self.skills.is_some());
         let mut config = match &self.config {
-            Some(path) => entry.config_from(path, preset)?,
-            None => entry.config(preset),
+            Some(path) => entry.config_from(path, preset, steers)?,
+            None => entry.config_of(preset, steers),
         };
         if self.preset.is_some_and(|asked| asked != config.preset) {
             return Err(Usage(format!(
@@ -261,6 +294,9 @@ impl Choices {
         }
         if let Some(folder) = self.data_folder.clone().or(config.data_folder.take()) {
             config.data_folder = Some(std::path::absolute(&folder).unwrap_or(folder));
+        }
+        if let Some(skills) = self.skills.clone().or(config.skills.take()) {
+            config.skills = Some(std::path::absolute(&skills).unwrap_or(skills));
         }
         config.ground |= self.ground;
         if let Some(roles) = self.roles.clone().or(config.roles.take()) {

@@ -14,6 +14,8 @@ pub struct Transition<'a> {
     pub step: usize,
     /// `[steps][rows]`
     pub reward: &'a mut Array,
+    /// `[steps][rows]`: the reward for style of environments that know one; others leave it as it is.
+    pub style_reward: &'a mut Array,
     /// `[steps][rows]`, see [`crate::kernels::termination`].
     pub termination: &'a mut Array<u32>,
     /// `[steps][rows]`: what kind of situation an agent is in, below [`GROUPS`]. Advantages of different

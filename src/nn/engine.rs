@@ -113,8 +113,8 @@ impl Engine {
     }
 
     /// Adds the gradient of a penalty to `gradient`: `weight` times the mean, over rows, of the squared norm
-    /// of the gradient of a network's mean output with respect to its observation (Mescheder, Geiger and
-    /// Nowozin 2018). Adds the sum of these squared norms to the first of `sums`. The network's hidden layers
+    /// of the gradient, with respect to its observation, of the mean of a network's first so many `heads`
+    /// (Mescheder, Geiger and Nowozin 2018). Adds the sum of these squared norms to the first of `sums`. The network's hidden layers
     /// are dense ReLUs, whose second derivative is zero; the gradient is therefore exact. The rows are a
     /// range of `samples`, `[..][width]`, which begin with observations.
     ///
@@ -127,6 +127,7 @@ impl Engine {
         samples: &Array,
         width: usize,
         rows: Range<usize>,
+        heads: usize,
         weight: f32,
         gradient: &mut Array,
         sums: &mut Array,
@@ -140,13 +141,17 @@ impl Engine {
         match &self.backend {
             Backend::Cpu(engine) => {
                 let (gradient, sums) = (gradient.host_mut(), sums.host_mut());
-                engine.add_gradient_penalty(network, parameters, samples, weight, gradient, sums);
+                engine.add_gradient_penalty(
+                    network, parameters, samples, heads, weight, gradient, sums,
+                );
             }
             #[cfg(feature = "gpu")]
             Backend::Fused(_) => unreachable!("networks with a penalty take tensors"),
             #[cfg(feature = "gpu")]
             Backend::Layerwise(engine) => {
-                engine.add_gradient_penalty(network, parameters, samples, weight, gradient, sums);
+                engine.add_gradient_penalty(
+                    network, parameters, samples, heads, weight, gradient, sums,
+                );
             }
         }
     }

@@ -1,8 +1,9 @@
-//! Rows of arrays, on either device: picked, labelled, replaced.
+//! Rows of arrays, on either device: picked, put side by side, replaced.
 
 use crate::gpu::{Array, Device};
 #[cfg(feature = "gpu")]
 use crate::nn::gpu::tensors;
+use std::ops::Range;
 
 /// The rows of `from`, `[..][width]`, by their numbers, `[n][width]`.
 pub fn pick(device: &Device, from: &Array, width: usize, rows: &[u32]) -> Array {
@@ -18,16 +19,33 @@ pub fn pick(device: &Device, from: &Array, width: usize, rows: &[u32]) -> Array 
     }
 }
 
-/// Rows `[n][width + 1]`: those of `from`, each with its label behind it.
-pub fn labelled(device: &Device, from: &Array, width: usize, labels: &[f32]) -> Array {
+/// Rows that are those of some parts, `[n][width]` each, side by side.
+pub fn beside(device: &Device, parts: &[(&Array, usize)]) -> Array {
     match device {
         Device::Cpu => {
-            let rows = from.host().chunks_exact(width).zip(labels);
-            let values = rows.flat_map(|(row, label)| row.iter().chain([label]));
-            Array::Host(values.copied().collect())
+            let rows = parts.first().map_or(0, |(part, width)| part.len() / width);
+            let row = |row: usize| {
+                let parts = parts.iter();
+                parts.flat_map(move |(part, width)| &part.host()[row * width..][..*width])
+            };
+            Array::Host((0..rows).flat_map(row).copied().collect())
         }
         #[cfg(feature = "gpu")]
-        Device::Gpu(gpu) => tensors::labelled(gpu, from, width, labels),
+        Device::Gpu(gpu) => tensors::beside(gpu, parts),
+        #[cfg(not(feature = "gpu"))]
+        Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
+    }
+}
+
+/// Some columns of the rows of `from`, `[n][width]`.
+pub fn columns(device: &Device, from: &Array, width: usize, range: Range<usize>) -> Array {
+    match device {
+        Device::Cpu => {
+            let rows = from.host().chunks_exact(width);
+            Array::Host(rows.flat_map(|row| &row[range.clone()]).copied().collect())
+        }
+        #[cfg(feature = "gpu")]
+        Device::Gpu(gpu) => tensors::columns(gpu, from, width, range),
         #[cfg(not(feature = "gpu"))]
         Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
     }
@@ -77,7 +95,7 @@ pub fn add_sum(device: &Device, values: &Array, to: &mut Array) {
 pub fn decay(
     device: &Device,
     parameters: &Array,
-    range: std::ops::Range<usize>,
+    range: Range<usize>,
     rate: f32,
     gradient: &mut Array,
 ) {

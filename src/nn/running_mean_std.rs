@@ -116,6 +116,11 @@ impl RunningMeanStd {
         }
     }
 
+    /// Means, then variances, `[2][dim]`, of moments in host memory.
+    pub fn moments(&self) -> &[f32] {
+        self.moments.host()
+    }
+
     /// A copy of the moments in host memory.
     ///
     /// # Errors

@@ -31,6 +31,8 @@ pub struct Point {
     pub fall: Option<f64>,
     /// Mean style reward of a step.
     pub style_reward: Option<f64>,
+    /// Weight of the task's reward beside that of the style, 0 to 1, where a rule finds it.
+    pub task_weight: Option<f64>,
     /// Share of the recorded windows that the discriminator took for such, 0 to 1.
     pub recorded_accuracy: Option<f64>,
     /// Share of the agents' windows that it took for such, 0 to 1.
@@ -68,6 +70,8 @@ pub(super) struct Panel {
     pub label: &'static str,
     pub value: fn(&Point) -> Option<f64>,
     beside: Option<Beside>,
+    /// A few words at the bottom.
+    note: Option<&'static str>,
     /// The axis, where the quantity itself sets its limits.
     pub limits: Option<(f64, f64)>,
     /// How the last value is written beside the curve.
@@ -101,6 +105,7 @@ pub(super) const PANELS: [Panel; 3] = [
         label: "success (%)",
         value: |point| point.success.map(|share| 100.0 * share),
         beside: None,
+        note: None,
         limits: Some((0.0, 104.0)),
         format: percent,
     },
@@ -108,6 +113,7 @@ pub(super) const PANELS: [Panel; 3] = [
         label: "episode return",
         value: |point| point.episode_return,
         beside: None,
+        note: None,
         limits: None,
         format: brief,
     },
@@ -115,6 +121,7 @@ pub(super) const PANELS: [Panel; 3] = [
         label: "episode length (steps)",
         value: |point| point.episode_length,
         beside: None,
+        note: None,
         limits: None,
         format: brief,
     },
@@ -126,6 +133,7 @@ const STYLE_PANELS: [Panel; 3] = [
         label: "style reward a step",
         value: |point| point.style_reward,
         beside: None,
+        note: None,
         limits: None,
         format: brief,
     },
@@ -136,6 +144,7 @@ const STYLE_PANELS: [Panel; 3] = [
             value: |point| point.recorded_accuracy.map(|share| 100.0 * share),
             names: ["agents", "recordings"],
         }),
+        note: None,
         limits: Some((0.0, 104.0)),
         format: percent,
     },
@@ -143,16 +152,30 @@ const STYLE_PANELS: [Panel; 3] = [
         label: "falls (%)",
         value: |point| point.fall.map(|share| 100.0 * share),
         beside: None,
+        note: None,
         limits: Some((0.0, 104.0)),
         format: percent,
     },
 ];
 
+/// Besides, where a rule finds the weights of task and style: the paper's figure 7.
+const WEIGHT_PANEL: Panel = Panel {
+    label: "weight of the task",
+    value: |point| point.task_weight,
+    beside: None,
+    note: Some("PD rule, our constants"),
+    limits: Some((0.0, 1.0)),
+    format: brief,
+};
+
 /// The panels of a training: those of every one, and those of its style, if it has one.
 fn panels(points: &[Point]) -> Vec<&'static Panel> {
-    let styled = points.iter().any(|point| point.style_reward.is_some());
+    let any = |of: fn(&Point) -> bool| points.iter().any(of);
+    let styled = any(|point| point.style_reward.is_some());
+    let weighed = any(|point| point.task_weight.is_some());
+    let weight = weighed.then_some(&WEIGHT_PANEL);
     let style = STYLE_PANELS.iter().filter(|_| styled);
-    PANELS.iter().chain(style).collect()
+    PANELS.iter().chain(weight).chain(style).collect()
 }
 
 /// Draws the curves, with `marks` and the beginnings of `levels` through all panels, as a
@@ -264,6 +287,10 @@ fn draw_panel(
             );
             canvas.text(name, at, Anchor::Left, chart::SMALL, colour)?;
         }
+    }
+    if let Some(note) = panel.note {
+        let at = (plot.frame.left + 14.0, plot.frame.bottom - 24.0);
+        canvas.text(note, at, Anchor::Left, chart::SMALL, chart::MUTED)?;
     }
     let raw = panel.values(points);
     if raw.is_empty() {

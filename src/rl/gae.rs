@@ -13,6 +13,8 @@ pub enum RewardSource {
     Task,
     /// A discriminator.
     Style,
+    /// An encoder of skills.
+    Skill,
 }
 
 /// Values that the critic gives to what lies behind a rollout, normalised.
@@ -64,6 +66,7 @@ fn estimate(
     let reward = match source {
         RewardSource::Task => &rollout.reward,
         RewardSource::Style => &rollout.style_reward,
+        RewardSource::Skill => &rollout.skill_reward,
     };
     match device {
         Device::Cpu => twin(

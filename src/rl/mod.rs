@@ -4,10 +4,12 @@
 //! generalised advantage estimation, normalisation, the objectives.
 
 pub mod amp;
+pub mod ase;
 pub mod gae;
 pub mod ppo;
 pub mod rollout;
 pub mod sample_action;
+pub mod task_weight;
 pub mod value_normalizer;
 
 use crate::container::{Section, SectionError};
@@ -27,6 +29,14 @@ pub struct Iteration {
     pub env_s: f64,
     /// Seconds spent learning.
     pub learn_s: f64,
+}
+
+impl Iteration {
+    /// One of the losses, by name.
+    pub fn loss(&self, name: &str) -> Option<f64> {
+        let found = self.losses.iter().find(|(other, _)| *other == name);
+        found.map(|(_, value)| *value)
+    }
 }
 
 /// Something that learns from environments.

@@ -21,8 +21,10 @@ pub struct Rollout {
     pub log_prob_and_value: Array,
     /// `[steps][rows]`, of the task.
     pub reward: Array,
-    /// `[steps][rows]`, of the style, where there is one.
+    /// `[steps][rows]`, of the style, where there is one: the environments', or a learner's discriminator's.
     pub style_reward: Array,
+    /// `[steps][rows]`, of being found by an encoder, where there is one.
+    pub skill_reward: Array,
     /// `[steps][rows]`, see [`crate::env::termination`].
     pub termination: Array<u32>,
     /// `[steps][rows]`, see [`Transition::group`].
@@ -50,6 +52,7 @@ impl Rollout {
             log_prob_and_value: zeros((1 + streams) * samples),
             reward: zeros(samples),
             style_reward: zeros(samples),
+            skill_reward: zeros(samples),
             termination: Array::zeroed(device, samples),
             group: Array::zeroed(device, samples),
             final_observation: zeros(spec.final_steps(steps) * rows * observation),
@@ -69,6 +72,7 @@ impl Rollout {
         let transition = Transition {
             step,
             reward: &mut self.reward,
+            style_reward: &mut self.style_reward,
             termination: &mut self.termination,
             group: &mut self.group,
             final_observation: &mut self.final_observation,

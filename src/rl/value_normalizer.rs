@@ -6,6 +6,7 @@ use crate::container::{Section, SectionError};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::normalize_advantages;
 use crate::kernels::learn::rollout_moments::{Params, launch, scale, twin};
+use crate::nn::rows;
 use anyhow::Result;
 
 /// Weight of the newest rollout in the running moments.
@@ -42,6 +43,13 @@ impl ValueNormalizer {
     /// `[streams][FIELDS]`
     pub fn scale(&self) -> &Array {
         &self.scale
+    }
+
+    /// Changes the weight of a stream's advantages.
+    pub fn set_weight(&mut self, stream: usize, weight: f32) {
+        let at = stream * scale::FIELDS + scale::WEIGHT;
+        let weight = Array::from_slice(&self.device, &[weight]);
+        rows::replace(&self.device, &mut self.scale, at, &weight);
     }
 
     /// Takes the returns of rollouts in. The first ones count in full, so that the moments start

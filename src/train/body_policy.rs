@@ -3,19 +3,27 @@
 use super::checkpoint::Checkpoint;
 use super::config::Config;
 use super::task::Task;
-use crate::env::humanoid::driver::BodyDriver;
+use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::env::humanoid::recorded::observe;
 use crate::env::humanoid::task::CpuHumanoidEnv;
 use crate::env::humanoid::task::play::play_episodes;
 use crate::rl::amp::FrozenDiscriminator;
 use anyhow::{Context, Result};
 
-/// What a checkpoint's policy drives, with its discriminator if the run has one.
+/// What a checkpoint's policy drives, with its discriminator or its low level's, if there is one.
 pub struct BodyPolicy {
     /// Who acts.
     pub driver: Box<dyn BodyDriver>,
     /// The discriminator.
     pub discriminator: Option<FrozenDiscriminator>,
+}
+
+/// What a discriminator says of episodes, of a step on average.
+pub struct StyleReport {
+    /// Its reward.
+    pub style: f64,
+    /// The cosine between the latent and what the encoder finds, if there is one.
+    pub encoder_cosine: Option<f64>,
 }
 
 impl BodyPolicy {
@@ -25,11 +33,14 @@ impl BodyPolicy {
     /// The checkpoint is not of such a run.
     pub fn new(mut checkpoint: Checkpoint, config: &Config, task: &dyn Task) -> Result<BodyPolicy> {
         let style = checkpoint.header.spec.style;
-        let discriminator = match &config.amp {
-            None => None,
-            Some(amp) => {
+        let discriminator = match (task.low_level(), &config.amp) {
+            (Some(low_level), _) => Some(low_level.discriminator.clone()),
+            (None, None) => None,
+            (None, Some(amp)) => {
                 let mut learner = checkpoint.sections.take("learner")?;
-                let loaded = FrozenDiscriminator::load(amp, &mut learner, style);
+                let latents = config.ase.as_ref().map(|ase| ase.rewards().latents);
+                let latents = latents.unwrap_or_default();
+                let loaded = FrozenDiscriminator::load(amp, latents, &mut learner, style);
                 Some(loaded.context("the checkpoint's discriminator cannot be read")?)
             }
         };
@@ -39,8 +50,8 @@ impl BodyPolicy {
         })
     }
 
-    /// Mean style reward of a step, over one episode of each environment; `None` without a discriminator.
-    pub fn mean_style(&self, envs: &mut CpuHumanoidEnv) -> Option<f64> {
+    /// What the discriminator says of one episode of each environment; `None` without one.
+    pub fn judged(&self, envs: &mut CpuHumanoidEnv) -> Option<StyleReport> {
         let discriminator = self.discriminator.as_ref()?;
         let moment = |envs: &CpuHumanoidEnv, env: usize| {
             let state = &envs.batch.worlds[env].state;
@@ -48,15 +59,29 @@ impl BodyPolicy {
         };
         let count = envs.batch.worlds.len();
         let mut before: Vec<Vec<f32>> = (0..count).map(|env| moment(envs, env)).collect();
-        let (mut sum, mut steps) = (0.0, 0usize);
-        play_episodes(envs, &*self.driver, |envs, running| {
-            for env in (0..count).filter(|&env| running[env]) {
-                let now = moment(envs, env);
-                sum += f64::from(discriminator.reward([&before[env], &now]));
-                steps += 1;
-                before[env] = now;
-            }
-        });
-        Some(sum / steps.max(1) as f64)
+        let (mut style, mut cosine, mut steps) = (0.0, None, 0usize);
+        play_episodes(
+            envs,
+            &*self.driver,
+            DriverState::default(),
+            |envs, running, state| {
+                let dim = state.latents.len() / count;
+                for env in (0..count).filter(|&env| running[env]) {
+                    let (now, latent) = (moment(envs, env), &state.latents[env * dim..][..dim]);
+                    let moments = [&before[env][..], &now];
+                    style += f64::from(discriminator.reward(moments, latent));
+                    if let Some(found) = discriminator.cosine(moments, latent) {
+                        *cosine.get_or_insert(0.0) += f64::from(found);
+                    }
+                    steps += 1;
+                    before[env] = now;
+                }
+            },
+        );
+        let mean = |sum: f64| sum / steps.max(1) as f64;
+        Some(StyleReport {
+            style: mean(style),
+            encoder_cosine: cosine.map(mean),
+        })
     }
 }

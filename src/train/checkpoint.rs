@@ -4,6 +4,7 @@
 //! `curriculum` and `trainer` are what the training goes on with.
 
 use super::config::{Config, VERSION};
+use super::fingerprint::Fingerprint;
 use super::state::TrainerState;
 use crate::container::{Format, Section, SectionError, Sections, StoreError};
 use crate::env::{EnvBatch, EnvSpec};
@@ -26,8 +27,9 @@ pub struct Header {
     pub task: String,
     /// Dimensions of the environments.
     pub spec: EnvSpec,
-    /// Fingerprint of the task's data: a policy is of no use with other data.
-    pub fingerprint: u32,
+    /// Fingerprint of what the policy was trained with.
+    #[serde(flatten)]
+    pub fingerprint: Fingerprint,
     /// The resolved configuration, as in `config.toml`.
     pub config: String,
     /// Environment steps so far.
@@ -72,6 +74,18 @@ pub enum CheckpointError {
         /// Fingerprint of the data it was trained on.
         found: u32,
         /// Fingerprint of the data at hand.
+        wanted: u32,
+    },
+    /// A policy that steers another low level.
+    #[error(
+        "{path} was trained over another low level (fingerprint {found:08x}, this has {wanted:08x}): bring back the one that the run was started with or name it with --skills, or start another run"
+    )]
+    LowLevel {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Fingerprint of the low level it was trained over.
+        found: u32,
+        /// Fingerprint of the low level at hand.
         wanted: u32,
     },
     /// A configuration that has changed since the run was started.
@@ -177,15 +191,15 @@ impl Checkpoint {
         })
     }
 
-    /// Reads a checkpoint for a task with its data.
+    /// Reads a checkpoint for a task with its data and its low level.
     ///
     /// # Errors
-    /// It cannot be read, or is of another task, of other environments or other data.
+    /// It cannot be read, or is of another task, of other environments, other data or another low level.
     pub fn load_for(
         path: &Path,
         task: &str,
         spec: &EnvSpec,
-        fingerprint: u32,
+        fingerprint: Fingerprint,
     ) -> Result<Self, CheckpointError> {
         let checkpoint = Self::load(path)?;
         let (found, path) = (&checkpoint.header, path.to_path_buf());
@@ -208,11 +222,21 @@ impl Checkpoint {
                 wanted: dims(spec),
             });
         }
-        if found.fingerprint != fingerprint {
+        let (found, wanted) = (found.fingerprint, fingerprint);
+        if found.data != wanted.data {
+            let (found, wanted) = (found.data, wanted.data);
             return Err(CheckpointError::Data {
                 path,
-                found: found.fingerprint,
-                wanted: fingerprint,
+                found,
+                wanted,
+            });
+        }
+        if found.low_level != wanted.low_level {
+            let (found, wanted) = (found.low_level, wanted.low_level);
+            return Err(CheckpointError::LowLevel {
+                path,
+                found,
+                wanted,
             });
         }
         Ok(checkpoint)

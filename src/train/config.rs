@@ -6,8 +6,10 @@
 use crate::gpu::Choice;
 use crate::input_file;
 use crate::nn::network::NetworkError;
-use crate::rl::amp::Amp;
+use crate::rl::amp::{Amp, DiscriminatorLoss};
+use crate::rl::ase::Ase;
 use crate::rl::ppo::Ppo;
+use crate::rl::task_weight::{TaskWeightConfig, WeightRule};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
@@ -53,7 +55,11 @@ pub struct Config {
     /// Metres of one unit of BVH files, for tasks of a simulated body; without it found from the skeletons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit_m: Option<f32>,
-    /// Environment steps after which training stops.
+    /// The low level whose skills the policy steers, for tasks of a simulated body: a run's folder, or one of its
+    /// checkpoints.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skills: Option<PathBuf>,
+    /// Environment steps after which training stops; decisions, where a low level is steered.
     pub steps: u64,
     /// Seconds after which training stops.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -72,6 +78,16 @@ pub struct Config {
     /// Those of a discriminator, for tasks that have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub amp: Option<Amp>,
+    /// Those of latents, for the task that has them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ase: Option<Ase>,
+    /// How the weights of the rewards of task and style are found, for tasks that have both.
+    #[serde(skip_serializing_if = "is_default", default)]
+    pub task_weight: TaskWeightConfig,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// The choices of a task's preset.
@@ -82,6 +98,8 @@ pub struct TaskPreset {
     pub ppo: Ppo,
     /// Those of a discriminator, if the task has one.
     pub amp: Option<Amp>,
+    /// Those of latents, if the task has any.
+    pub ase: Option<Ase>,
     /// Environment steps of a training.
     pub steps: u64,
 }
@@ -143,6 +161,9 @@ pub enum ConfigError {
         /// Why it cannot work.
         why: String,
     },
+    /// A low level that cannot be steered.
+    #[error("{0}")]
+    LowLevel(String),
     /// A mistake in a task's own choices.
     #[error("[task]: {0}")]
     Settings(String),
@@ -189,6 +210,7 @@ impl Config {
             ground: false,
             roles: None,
             unit_m: None,
+            skills: None,
             steps: chosen.steps,
             max_time_s: None,
             stop_at_success: None,
@@ -200,10 +222,13 @@ impl Config {
             },
             ppo: chosen.ppo,
             amp: chosen.amp,
+            ase: chosen.ase,
+            task_weight: TaskWeightConfig::default(),
         }
     }
 
-    /// One of the presets of the task called `task`, changed by the keys that a TOML file names.
+    /// One of the presets of the task called `task`, changed by the keys that a TOML file names. `choices` is told
+    /// whether these name a low level.
     ///
     /// # Errors
     /// See [`ConfigError`].
@@ -211,7 +236,7 @@ impl Config {
         path: &Path,
         task: &str,
         preset: Preset,
-        presets: fn(Preset) -> TaskPreset,
+        choices: &dyn Fn(Preset, bool) -> TaskPreset,
     ) -> Result<Self, ConfigError> {
         let text = read(path)?;
         let mut changes = parse(path, &text)?;
@@ -234,7 +259,9 @@ impl Config {
                 message: mistake.problem,
             },
         };
-        let config = Config::preset(task, preset, presets(preset));
+        let skills = changes.get("skills").and_then(toml::Value::as_str);
+        let steers = skills.is_some_and(|skills| !skills.is_empty());
+        let config = Config::preset(task, preset, choices(preset, steers));
         let config = config.changed(changes).map_err(|mistake| {
             let written = version.as_ref().and_then(toml::Value::as_str);
             let written = written.filter(|version| *version != VERSION);
@@ -275,9 +302,10 @@ impl Config {
             key: key.to_string(),
             problem,
         };
-        if matches!(key, "preset" | "task.name") {
+        if matches!(key, "preset" | "task.name" | "skills") {
             return Err(mistaken(
-                "it decides what all else begins with: give `--preset` or another TASK".into(),
+                "it decides what all else begins with: give `--preset`, `--skills` or another TASK"
+                    .into(),
             ));
         }
         let names = key.rsplit('.');
@@ -306,6 +334,7 @@ impl Config {
         config.data = config.data.filter(named);
         config.data_folder = config.data_folder.filter(named);
         config.roles = config.roles.filter(named);
+        config.skills = config.skills.filter(named);
         config.unit_m = config.unit_m.filter(|&unit| unit != 0.0);
         config.max_time_s = config.max_time_s.filter(|&seconds| seconds != 0.0);
         config.stop_at_success = config.stop_at_success.filter(|&success| success != 0.0);
@@ -319,9 +348,12 @@ impl Config {
         all.entry("data_folder").or_insert("".into());
         all.entry("ground").or_insert(false.into());
         all.entry("roles").or_insert("".into());
+        all.entry("skills").or_insert("".into());
         all.entry("unit_m").or_insert(0.0.into());
         all.entry("max_time_s").or_insert(0.0.into());
         all.entry("stop_at_success").or_insert(0.0.into());
+        let weight = table(&TaskWeightConfig::default());
+        all.entry("task_weight").or_insert(weight.into());
         all
     }
 
@@ -345,7 +377,7 @@ impl Config {
     /// run's `config.toml`.
     pub fn difference(&self, other: &str) -> Option<String> {
         let decisive = |mut all: toml::Table| {
-            all.retain(|key, _| matches!(key, "seed" | "task" | "ppo" | "amp"));
+            all.retain(|key, _| DECISIVE.contains(&key));
             all
         };
         let other = toml::from_str(other).unwrap_or_default();
@@ -384,9 +416,43 @@ impl Config {
             within("unit_m", f64::from(unit), 1e-6, 1e3)?;
         }
         check_ppo(&self.ppo)?;
-        self.amp.as_ref().map_or(Ok(()), check_amp)
+        self.amp.as_ref().map_or(Ok(()), check_amp)?;
+        self.ase.as_ref().map_or(Ok(()), check_ase)?;
+        self.check_task_weight()
+    }
+
+    /// Refuses a rule for the weights of rewards that cannot be weighed by it.
+    fn check_task_weight(&self) -> Result<(), ConfigError> {
+        let chosen = &self.task_weight;
+        within(
+            "task_weight.style_reference",
+            chosen.style_reference,
+            0.0,
+            1e3,
+        )?;
+        if chosen.rule == WeightRule::Fixed || self.skills.is_some() {
+            return Ok(());
+        }
+        let why = match &self.amp {
+            Some(amp) if amp.loss == DiscriminatorLoss::Hinge => {
+                "it compares style rewards by their ratio, and those of amp.loss = \"hinge\" may be negative".into()
+            }
+            Some(amp) if amp.task_weight > 0.0 => return Ok(()),
+            _ => format!(
+                "it weighs the rewards of task and style, and the task `{}` has but one of them",
+                self.task.name
+            ),
+        };
+        Err(ConfigError::Value {
+            key: "task_weight.rule",
+            value: "pd".into(),
+            why,
+        })
     }
 }
+
+/// Keys that decide over what is learned.
+const DECISIVE: [&str; 6] = ["seed", "task", "ppo", "amp", "ase", "task_weight"];
 
 /// Bytes of the longest configuration.
 const MAX_BYTES: u64 = 1 << 24;
@@ -489,6 +555,16 @@ fn check_amp(amp: &Amp) -> Result<(), ConfigError> {
     within("amp.replay_per_update", amp.replay_per_update, 1, 1 << 22)?;
     within("amp.style_weight", amp.style_weight, 1e-6, 1e3)?;
     within("amp.task_weight", amp.task_weight, 0.0, 1e3)
+}
+
+fn check_ase(ase: &Ase) -> Result<(), ConfigError> {
+    let [least, most] = ase.kept_steps;
+    within("ase.latent", ase.latent, 2, 256)?;
+    within("ase.kept_steps", most, 1, 10_000)?;
+    within("the first of ase.kept_steps", least, 1, most)?;
+    within("ase.skill_weight", ase.skill_weight, 0.0, 1e3)?;
+    within("ase.diversity", ase.diversity, 0.0, 1e3)?;
+    within("ase.spread", ase.spread, 0.0, 10.0)
 }
 
 /// Writes `changes` over `table`, refusing keys that `table` does not know and values of another

@@ -3,10 +3,10 @@
 //! [`trainer`] and [`checkpoint`] know no task. A [`task`] is one value that opens environments,
 //! evaluates policies and draws figures; [`tasks`] is the list of them.
 
-pub mod ablation;
 pub mod body_episodes;
 pub mod body_policy;
 pub mod checkpoint;
+pub mod comparison;
 pub mod config;
 pub mod controller;
 pub mod data;
@@ -15,7 +15,9 @@ pub mod evaluate;
 pub mod evaluation;
 #[cfg(feature = "report")]
 pub mod figures;
+pub mod fingerprint;
 pub mod locomotion;
+pub mod low_level;
 pub mod memory;
 pub mod metrics;
 pub mod metrics_writer;

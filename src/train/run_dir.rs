@@ -51,6 +51,17 @@ pub struct RunDir {
 /// Locked by who writes the run, whose process it names.
 const LOCK: &str = "run.lock";
 
+/// A checkpoint that is named itself, or by its run's folder: the last there.
+///
+/// # Errors
+/// There is none.
+pub fn checkpoint_of(run: &Path) -> Result<PathBuf> {
+    match run.is_file() {
+        true => Ok(run.to_path_buf()),
+        false => RunDir::open(run)?.last(),
+    }
+}
+
 impl RunDir {
     /// Makes and claims the folder of a new run: the given one, or the next free `runs/TASK-N`.
     ///

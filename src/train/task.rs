@@ -7,6 +7,7 @@
 use super::body_episodes::BodyEpisodes;
 use super::config::{Config, ConfigError, Preset, TaskPreset};
 use super::evaluation::{EvalOptions, EvalReport, Evaluation};
+use super::fingerprint::Fingerprint;
 use super::locomotion::Locomotion;
 #[cfg(feature = "report")]
 use super::metrics::UpdateMetrics;
@@ -18,6 +19,7 @@ use crate::gpu::Device;
 use crate::nn::{ActorCritic, Policy};
 use crate::rl::Algorithm;
 use crate::rl::amp::discriminator::network;
+use crate::rl::ase::FrozenLowLevel;
 use crate::rl::ppo::PpoLearner;
 use anyhow::Result;
 use std::path::Path;
@@ -30,6 +32,8 @@ pub struct TaskEntry {
     pub about: &'static str,
     /// The choices to start from.
     pub preset: fn(Preset) -> TaskPreset,
+    /// The choices to start from where the policy steers a low level, of tasks in which it can.
+    pub steering: Option<fn(Preset) -> TaskPreset>,
     /// Refuses choices of the task that cannot work. Returns the dimensions of the environments.
     pub spec: fn(&Config) -> Result<EnvSpec, ConfigError>,
     /// Whether its data is a motion list.
@@ -43,15 +47,34 @@ pub struct TaskEntry {
 impl TaskEntry {
     /// A preset.
     pub fn config(&self, preset: Preset) -> Config {
-        Config::preset(self.name, preset, (self.preset)(preset))
+        self.config_of(preset, false)
     }
 
-    /// A preset changed by the keys that a TOML file names.
+    /// A preset for a policy that acts itself, or for one that steers a low level.
+    pub fn config_of(&self, preset: Preset, steers: bool) -> Config {
+        Config::preset(self.name, preset, self.choices(preset, steers))
+    }
+
+    /// A preset changed by the keys that a TOML file names. The policy steers a low level if the file names one,
+    /// or if it is said here.
     ///
     /// # Errors
     /// See [`ConfigError`].
-    pub fn config_from(&self, path: &Path, preset: Preset) -> Result<Config, ConfigError> {
-        Config::from_file(path, self.name, preset, self.preset)
+    pub fn config_from(
+        &self,
+        path: &Path,
+        preset: Preset,
+        steers: bool,
+    ) -> Result<Config, ConfigError> {
+        let choices = |preset, named| self.choices(preset, steers || named);
+        Config::from_file(path, self.name, preset, &choices)
+    }
+
+    fn choices(&self, preset: Preset, steers: bool) -> TaskPreset {
+        match self.steering {
+            Some(steering) if steers => steering(preset),
+            _ => (self.preset)(preset),
+        }
     }
 
     /// Refuses what cannot work, before anything is opened or written. Returns the dimensions of the
@@ -61,10 +84,19 @@ impl TaskEntry {
     /// [`ConfigError::Value`], or an error of the task or of the networks.
     pub fn check(&self, config: &Config) -> Result<EnvSpec, ConfigError> {
         config.check()?;
+        if self.steering.is_none() && config.skills.is_some() {
+            return Err(ConfigError::Settings(format!(
+                "the task `{}` cannot be done by steering a low level: leave out `skills`",
+                self.name
+            )));
+        }
         let spec = (self.spec)(config)?;
         ActorCritic::new(&config.ppo.network, &spec.observation, spec.action, 1)?;
         if let Some(amp) = &config.amp {
-            network(amp, 2 * spec.style).map_err(ConfigError::Discriminator)?;
+            let latents = config.ase.as_ref().map(|ase| ase.rewards().latents);
+            let latents = latents.unwrap_or_default();
+            network(amp, 2 * spec.style + latents.shown(), latents)
+                .map_err(ConfigError::Discriminator)?;
         }
         if !self.takes_motions && config.reads_for_bodies() {
             return Err(ConfigError::Settings(format!(
@@ -96,8 +128,8 @@ pub trait Task: Send + Sync {
     /// See [`ConfigError`].
     fn with_choices(&self, config: &Config) -> Result<Box<dyn Task>, ConfigError>;
 
-    /// Fingerprint of the data: a policy is of no use with other data. 0 if there is none.
-    fn fingerprint(&self) -> u32;
+    /// Fingerprint of the data and the low level: a policy is of no use with others.
+    fn fingerprint(&self) -> Fingerprint;
 
     /// The data in a few words, to be said when a training starts.
     fn describe(&self) -> String;
@@ -119,6 +151,11 @@ pub trait Task: Send + Sync {
         device: &Device,
     ) -> Result<Box<dyn Algorithm>> {
         ppo_learner(config, envs, device)
+    }
+
+    /// The low level that policies of this task steer, if they do.
+    fn low_level(&self) -> Option<&FrozenLowLevel> {
+        None
     }
 
     /// What moves a simulated body by a policy of this task: the policy itself, unless it steers something

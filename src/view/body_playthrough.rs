@@ -162,7 +162,7 @@ impl BodyPlaythrough {
         let style = env.spec().style;
         let moments = [&self.observation[..style], &next.observation[..style]];
         let discriminator = policy.discriminator.as_ref();
-        next.style = discriminator.map(|discriminator| discriminator.reward(moments));
+        next.style = discriminator.map(|discriminator| discriminator.reward(moments, &next.driver.latents));
         next.follow(context);
         Ok(next)
     }

@@ -6,6 +6,8 @@ mod bench;
 #[cfg(unix)]
 mod damaged;
 mod data;
+#[path = "../support/low_level.rs"]
+mod low_level;
 #[path = "../support/mocap.rs"]
 mod mocap;
 mod obstacles;
@@ -15,6 +17,7 @@ mod refused;
 mod render;
 mod sim;
 mod stand;
+mod steering;
 #[cfg(unix)]
 mod stopped;
 mod style;

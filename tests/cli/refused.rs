@@ -56,6 +56,10 @@ fn mistaken_options_name_what_was_meant() {
             "train plane --resume run --config a.toml",
             "cannot be used with",
         ),
+        (
+            "train punch --resume run --task-weight pd",
+            "cannot be used with",
+        ),
         ("eval", "required arguments"),
         (
             "eval run --episodes 0",

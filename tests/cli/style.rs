@@ -48,8 +48,15 @@ fn bodies_learn_a_style_and_are_evaluated() {
     }
     // What has learned to move begins a task, and only that.
     place.done(&format!(
-        "train punch {SMALL} --steps 128 --from imitate --out begun"
+        "train punch {SMALL} --steps 128 --from imitate --task-weight pd --out begun"
     ));
+    let [begun, imitate] = ["begun", "imitate"].map(|run| rows(&place.path(run)));
+    assert_eq!((begun.len(), imitate.len()), (1, 2));
+    let style = imitate
+        .iter()
+        .map(|row| row["style_reward"].as_f64().unwrap());
+    let (reference, mean) = (&begun[0]["style_reference"], style.sum::<f64>() / 2.0);
+    assert!((reference.as_f64().unwrap() - 0.8 * mean).abs() < 1e-6);
     place.refused(
         &format!("train punch {SMALL} --set ppo.network.hidden=[64] --from imitate --out wrong"),
         1,
@@ -62,18 +69,46 @@ fn bodies_learn_a_style_and_are_evaluated() {
     );
 }
 
-#[test]
-fn a_style_goes_on_where_it_was() {
+/// Trains without a stop and with one. Returns the metrics.
+fn resumed(options: &str) -> Vec<Value> {
     let place = Place::new();
-    place.done(&format!("train punch {SMALL} --steps 768 --out whole"));
-    place.done(&format!("train punch {SMALL} --steps 384 --out halves"));
+    place.done(&format!("train punch {options} --steps 768 --out whole"));
+    place.done(&format!("train punch {options} --steps 384 --out halves"));
     place.done("train punch --resume halves --steps 768");
     let [whole, halves] = ["whole", "halves"].map(|run| {
         let path = place.path(run).join("checkpoints/last.ckpt");
         let checkpoint = footwork::train::checkpoint::Checkpoint::load(&path);
         checkpoint.unwrap().sections
     });
-    assert!(whole == halves);
+    assert!(whole == halves, "{options}");
+    rows(&place.path("whole"))
+}
+
+#[test]
+fn a_style_goes_on_where_it_was() {
+    let rows = resumed(SMALL);
+    assert!(!keys(&rows[0]).contains(&"task_weight"));
+}
+
+#[test]
+fn a_weight_that_looks_after_itself_goes_on_where_it_was() {
+    let pd = format!("{SMALL} --task-weight pd --set task_weight.style_reference=0.6");
+    let first = ["cpu", "lavapipe"].map(|device| {
+        let rows = resumed(&pd.replace("--device cpu", &format!("--device {device}")));
+        let of = |row: &Value, key: &str| row[key].as_f64().unwrap();
+        for row in &rows {
+            let lambda = of(row, "lambda");
+            assert!((0.5..=3.0).contains(&lambda), "{row}");
+            assert!((of(row, "task_weight") - lambda / (1.0 + lambda)).abs() < 1e-6);
+            assert!((of(row, "style_reference") - 0.6).abs() < 1e-6);
+        }
+        let moved = rows
+            .windows(2)
+            .all(|pair| pair[0]["lambda"] != pair[1]["lambda"]);
+        assert!(moved, "{rows:?}");
+        of(&rows[0], "style_reward")
+    });
+    assert!((first[0] - first[1]).abs() < 1e-2, "{first:?}");
 }
 
 #[test]
@@ -108,6 +143,46 @@ fn what_a_style_cannot_be_is_refused() {
         ("--set task.far=somehow", "somehow"),
     ] {
         place.refused(&format!("train punch {SMALL} {rest} --out run"), 2, &[part]);
+    }
+    for (task, rest, parts) in [
+        (
+            "plane",
+            "--task-weight pd",
+            ["task_weight.rule is pd", "`plane`"],
+        ),
+        (
+            "imitate",
+            "--task-weight pd",
+            ["task_weight.rule is pd", "`imitate`"],
+        ),
+        (
+            "punch",
+            "--task-weight pd --set amp.loss=hinge",
+            ["task_weight.rule is pd", "hinge"],
+        ),
+        (
+            "punch",
+            "--task-weight pd --set amp.task_weight=0",
+            ["task_weight.rule is pd", "but one"],
+        ),
+        ("punch", "--task-weight bd", ["invalid value", "fixed, pd"]),
+        (
+            "punch",
+            "--set task_weight.rule=bd",
+            ["`bd`", "`fixed` or `pd`"],
+        ),
+        (
+            "punch",
+            "--set task_weight.style_reference=-0.1",
+            ["task_weight.style_reference is -0.1", "between"],
+        ),
+        (
+            "punch",
+            "--set task_weight.style_reference=nan",
+            ["task_weight.style_reference is NaN", "between"],
+        ),
+    ] {
+        place.refused(&format!("train {task} {rest} --out run"), 2, &parts);
     }
     place.refused(
         "train plane --ground --out run",

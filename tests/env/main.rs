@@ -7,3 +7,4 @@ mod support;
 
 mod humanoid;
 mod locomotion;
+mod pendulum;

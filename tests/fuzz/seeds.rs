@@ -147,7 +147,7 @@ pub fn checkpoint() -> Seeds {
         version: String::new(),
         task: entry.name.to_string(),
         spec: envs.spec(),
-        fingerprint: 0,
+        fingerprint: 0.into(),
         config: config.to_toml(),
         steps: 4,
     };

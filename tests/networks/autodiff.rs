@@ -179,6 +179,7 @@ pub fn ppo_loss(
 /// observations; those before `first` do not count.
 pub fn penalty(
     network: &Network,
+    heads: usize,
     flat: &[f32],
     samples: &[f32],
     width: usize,
@@ -195,8 +196,10 @@ pub fn penalty(
         masks.push(x.clone().sign());
     }
     let leaf = leaf(flat);
-    let heads = network.outputs();
-    let mut slope = Tensor::<2>::from_inner(x.ones_like().mul_scalar(1.0 / heads as f64));
+    let mut seed = vec![0.0; network.outputs()];
+    seed[..heads].fill(1.0 / heads as f32);
+    let seed = tensor(&seed.repeat(rows), [rows, network.outputs()]);
+    let mut slope = Tensor::<2>::from_inner(seed);
     for (number, params) in network.layers().iter().enumerate().rev() {
         let layer = &params.layer;
         let weights = leaf.clone().slice([params.weights()]);

@@ -10,13 +10,14 @@ mod autodiff;
 mod penalty;
 mod refused;
 mod running;
+mod task_weight;
 
 use footwork::gpu::{Array, Choice, Device};
 use footwork::kernels::rng::{gaussian, random4};
 use footwork::nn::layer::{Activation, Convolution};
 use footwork::nn::observation::ObservationSpec;
 use footwork::nn::{ActorCritic, Adam, Engine, EngineSize, NetworkConfig, Policy, Rows};
-use footwork::rl::ppo::loss::{LossCoefficients, PpoLoss, SUMS};
+use footwork::rl::ppo::loss::{Diversity, LossCoefficients, PpoLoss, SUMS};
 
 const ACTION: usize = 5;
 /// A vector of 11 numbers, and two maps of 16 x 16.
@@ -176,6 +177,8 @@ impl Case {
             values: 1,
             log_std: self.networks.log_std(),
             old_log_std,
+            observation: self.networks.actor.observation().dim(),
+            diversity: Diversity::default(),
             coefficients: self.coefficients,
         }
     }

@@ -14,7 +14,7 @@ const DIM: usize = 9;
 const ROWS: usize = 37;
 const WEIGHT: f32 = 5.0;
 
-fn network(hidden: &[usize], heads: usize) -> Network {
+fn network(hidden: &[usize], outputs: usize) -> Network {
     let config = NetworkConfig {
         convolutions: Vec::new(),
         encoder_hidden: Vec::new(),
@@ -25,7 +25,7 @@ fn network(hidden: &[usize], heads: usize) -> Network {
         vector: DIM,
         grid: None,
     };
-    Network::new(&config, &window, heads, 0).expect("a network")
+    Network::new(&config, &window, outputs, 0).expect("a network")
 }
 
 fn flat(network: &Network) -> Vec<f32> {
@@ -36,7 +36,7 @@ fn flat(network: &Network) -> Vec<f32> {
 }
 
 /// The gradient that the penalty adds, and the sum of squared norms.
-fn added(device: &Device, network: &Network, samples: &[f32]) -> (Vec<f32>, f32) {
+fn added(device: &Device, network: &Network, heads: usize, samples: &[f32]) -> (Vec<f32>, f32) {
     let flat = flat(network);
     let size = EngineSize {
         parameters: flat.len(),
@@ -54,6 +54,7 @@ fn added(device: &Device, network: &Network, samples: &[f32]) -> (Vec<f32>, f32)
         &array(samples),
         DIM + 1,
         2..ROWS,
+        heads,
         WEIGHT,
         &mut gradient,
         &mut sums,
@@ -67,8 +68,8 @@ fn added(device: &Device, network: &Network, samples: &[f32]) -> (Vec<f32>, f32)
     )
 }
 
-/// The gradient of the mean output with respect to a row, in f64, by the chain rule.
-fn slope(network: &Network, flat: &[f64], row: &[f32]) -> Vec<f64> {
+/// The gradient of the mean of the heads with respect to a row, in f64, by the chain rule.
+fn slope(network: &Network, heads: usize, flat: &[f64], row: &[f32]) -> Vec<f64> {
     let mut values: Vec<f64> = row.iter().map(|&value| f64::from(value)).collect();
     let mut jacobian: Vec<Vec<f64>> = (0..DIM)
         .map(|i| (0..DIM).map(|j| f64::from(u8::from(i == j))).collect())
@@ -102,17 +103,16 @@ fn slope(network: &Network, flat: &[f64], row: &[f32]) -> Vec<f64> {
             .collect();
         values = masked(sums.clone());
     }
-    let heads = network.outputs() as f64;
     jacobian
         .iter()
-        .map(|row| row.iter().sum::<f64>() / heads)
+        .map(|row| row[..heads].iter().sum::<f64>() / heads as f64)
         .collect()
 }
 
-fn plain(network: &Network, flat: &[f64], samples: &[f32]) -> f64 {
+fn plain(network: &Network, heads: usize, flat: &[f64], samples: &[f32]) -> f64 {
     let rows = samples.chunks_exact(DIM + 1).skip(2);
     let squares = rows.map(|row| {
-        let slope = slope(network, flat, &row[..DIM]);
+        let slope = slope(network, heads, flat, &row[..DIM]);
         slope.iter().map(|value| value * value).sum::<f64>()
     });
     squares.sum()
@@ -121,14 +121,15 @@ fn plain(network: &Network, flat: &[f64], samples: &[f32]) -> f64 {
 #[test]
 fn it_is_that_of_central_differences() {
     let samples = normal(ROWS * (DIM + 1), 11);
-    for (hidden, heads) in [(&[8, 6][..], 1), (&[7], 3), (&[], 2)] {
-        let network = network(hidden, heads);
+    // Behind the heads may be outputs of others.
+    for (hidden, outputs, heads) in [(&[8, 6][..], 1, 1), (&[7], 3, 3), (&[], 2, 2), (&[8], 5, 2)] {
+        let network = network(hidden, outputs);
         let wide: Vec<f64> = flat(&network)
             .iter()
             .map(|&value| f64::from(value))
             .collect();
-        let (gradient, square) = added(&Device::Cpu, &network, &samples);
-        let want = plain(&network, &wide, &samples);
+        let (gradient, square) = added(&Device::Cpu, &network, heads, &samples);
+        let want = plain(&network, heads, &wide, &samples);
         assert!(
             (f64::from(square) - want).abs() < 1e-4 * want,
             "{square} {want}"
@@ -138,7 +139,7 @@ fn it_is_that_of_central_differences() {
             let moved = |by: f64| {
                 let mut wide = wide.clone();
                 wide[at] += by;
-                plain(&network, &wide, &samples)
+                plain(&network, heads, &wide, &samples)
             };
             let slope = (moved(1e-7) - moved(-1e-7)) / 2e-7 * f64::from(WEIGHT) / count;
             let error = (f64::from(*got) - slope).abs();
@@ -154,15 +155,23 @@ fn it_is_that_of_central_differences() {
 #[test]
 fn it_is_that_of_autodiff_and_the_same_on_a_gpu() {
     let samples = normal(ROWS * (DIM + 1), 12);
-    for (hidden, heads) in [(&[130, 100][..], 1), (&[20, 10], 4)] {
-        let network = network(hidden, heads);
-        let (gradient, square) = added(&Device::Cpu, &network, &samples);
-        let (on_gpu, gpu_square) = added(&crate::lavapipe(), &network, &samples);
+    for (hidden, outputs, heads) in [(&[130, 100][..], 1, 1), (&[20, 10], 4, 4), (&[20], 7, 3)] {
+        let network = network(hidden, outputs);
+        let (gradient, square) = added(&Device::Cpu, &network, heads, &samples);
+        let (on_gpu, gpu_square) = added(&crate::lavapipe(), &network, heads, &samples);
         let largest = gradient
             .iter()
             .fold(0.0f32, |most, value| most.max(value.abs()));
         assert!((square - gpu_square).abs() < 1e-4 * square);
-        let oracle = autodiff::penalty(&network, &flat(&network), &samples, DIM + 1, 2, WEIGHT);
+        let oracle = autodiff::penalty(
+            &network,
+            heads,
+            &flat(&network),
+            &samples,
+            DIM + 1,
+            2,
+            WEIGHT,
+        );
         for (at, got) in gradient.iter().enumerate() {
             for (name, want) in [("autodiff", oracle[at]), ("GPU", on_gpu[at])] {
                 assert!(

@@ -32,6 +32,7 @@ fn a_learning_curve_survives_whatever_it_is_given() {
         episode_length: Some(value),
         fall: Some(value),
         style_reward: Some(value),
+        task_weight: Some(value),
         recorded_accuracy: Some(value),
         agent_accuracy: Some(value),
     };
@@ -123,4 +124,13 @@ fn a_training_with_a_discriminator_has_its_panels() {
     let picture = drawn(|path| learning_curve::draw(path, &styled, &[], &[]));
     assert!(picture.height > plain.height + 3 * 250);
     assert!(picture.has([0xd5, 0x5e, 0x00]), "the recordings' line");
+    let weighed: Vec<Point> = styled
+        .into_iter()
+        .map(|point| Point {
+            task_weight: Some(0.6),
+            ..point
+        })
+        .collect();
+    let weighed = drawn(|path| learning_curve::draw(path, &weighed, &[], &[]));
+    assert!(weighed.height > picture.height + 250, "one for the weight");
 }

@@ -8,4 +8,5 @@ pub mod database;
 pub mod geometry;
 pub mod ground;
 pub mod inputs;
+pub mod low_level;
 pub mod oracle;

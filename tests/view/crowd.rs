@@ -42,6 +42,7 @@ fn step(batch: &mut EnvBatch, device: &Device) {
         Transition {
             step: 0,
             reward: &mut Array::zeroed(device, 1),
+            style_reward: &mut Array::zeroed(device, 1),
             termination: &mut Array::zeroed(device, 1),
             group: &mut Array::zeroed(device, 1),
             final_observation: &mut Array::zeroed(device, spec.observation.dim()),

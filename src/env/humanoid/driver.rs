@@ -13,6 +13,8 @@ pub struct DriverState {
     pub steps: usize,
     /// Latents that are held, `[rows][latent]`; empty where there are none.
     pub latents: Vec<f32>,
+    /// Steps for which they are still held, `[rows]`, where that is not the same for all.
+    pub kept: Vec<u32>,
 }
 
 /// Something that moves simulated bodies by what they observe.

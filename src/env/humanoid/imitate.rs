@@ -3,7 +3,7 @@
 //! [`ImitateTask`] begins episodes in recorded moments; [`evaluate`] compares what a policy does with the
 //! recordings.
 
-use super::driver::BodyDriver;
+use super::driver::{BodyDriver, DriverState};
 use super::fidelity::{FidelityProbe, FidelityReport};
 use super::recorded::{mean_action, start_states};
 use super::task::play::play_episodes;
@@ -71,7 +71,7 @@ pub fn evaluate(
     let library = task.library.clone();
     let mut envs = CpuHumanoidEnv::unstaggered(task, 0..episodes, seed);
     let mut probe = FidelityProbe::new(&library, &envs);
-    let found = play_episodes(&mut envs, driver, |envs, running| {
+    let found = play_episodes(&mut envs, driver, DriverState::default(), |envs, running, _| {
         probe.observe(envs, running);
     });
     probe.report(&found)

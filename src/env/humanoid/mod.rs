@@ -13,6 +13,7 @@ pub mod fidelity;
 pub mod imitate;
 pub mod punch;
 pub mod recorded;
+pub mod skills;
 pub mod stand;
 pub mod starts;
 pub mod task;

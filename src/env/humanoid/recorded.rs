@@ -59,8 +59,9 @@ pub fn lifted(model: &Model, q: &[f32]) -> Vec<f32> {
     q
 }
 
-/// Two moments a step apart from every frame of a library's motions on.
-pub fn demonstrations(library: &MotionLibrary) -> Demonstrations {
+/// Two moments a step apart from every frame of a library's motions on, and behind them the latent of the clip, if
+/// clips have any.
+pub fn demonstrations(library: &MotionLibrary, latents: &[&[f32]]) -> Demonstrations {
     let model = library.model();
     let mut moments = Vec::new();
     let mut weights = Vec::new();
@@ -78,7 +79,8 @@ pub fn demonstrations(library: &MotionLibrary) -> Demonstrations {
             let (q, v) = library.at(motion, time);
             observe(model, &q, &v)
         };
-        [moment(time), moment(time + DT)].concat()
+        let latent = latents.get(motion).copied().unwrap_or_default();
+        [&moment(time)[..], &moment(time + DT), latent].concat()
     };
     let windows: Vec<Vec<f32>> = moments.par_iter().map(window).collect();
     let dim = windows.first().map_or(0, Vec::len);

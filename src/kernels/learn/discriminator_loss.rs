@@ -13,19 +13,24 @@ crate::shader_params! {
         pub width: u32,
         /// 1 for the hinge loss, 0 for binary cross-entropy.
         pub hinge: u32,
+        /// Outputs of the network that are the discriminator's.
+        pub heads: u32,
         /// 1 / rows of the mean.
         pub inv_count: f32,
     }
 }
 
 /// What is added up: loss; rows that were recorded, and those of them taken for it; rows of agents, and
-/// those of them taken for it.
+/// those of them taken for it; cosines of an encoder.
 pub const SUMS: usize = shader::discriminator_loss::constants::SUMS as usize;
+/// Index of the cosines, which [`encoder_loss`](super::encoder_loss) adds up.
+pub const COSINE: usize = SUMS - 1;
 
 /// Queues the shader on `gpu`.
 ///
-/// `dims`: numbers of a window, parameters, heads. `samples` are `[..][width]`, a window and then 1 if it
-/// was recorded, else 0; `outputs` and `output_grads` `[rows][heads]`, `extras` `[rows][SUMS]`.
+/// `dims`: numbers of a window, parameters, outputs. `samples` are `[..][width]`, a window and then 1 if it
+/// was recorded, else 0; `outputs` and `output_grads` `[rows][outputs]`, whose heads come first, `extras`
+/// `[rows][SUMS]`.
 pub fn launch(
     gpu: &Gpu,
     dims: &Buffer<u32>,
@@ -43,13 +48,21 @@ pub fn launch(
     );
 }
 
-/// The shader's computation on the host, of `rows` whose last number says whether they were recorded: writes
-/// the gradients over the `outputs`, `[rows][heads]`, and adds to `extras`, `[SUMS]`.
-pub fn rows(rows: &[&[f32]], outputs: &mut [f32], extras: &mut [f32], params: &Params) {
-    let heads = outputs.len() / rows.len().max(1);
+/// The shader's computation on the host, of `rows` that hold 1 behind their `window` numbers if they were
+/// recorded: writes the gradients over the heads of the `outputs`, `[rows][outputs]`, and adds to `extras`,
+/// `[SUMS]`.
+pub fn rows(
+    rows: &[&[f32]],
+    window: usize,
+    outputs: &mut [f32],
+    extras: &mut [f32],
+    params: &Params,
+) {
+    let (width, heads) = (outputs.len() / rows.len().max(1), params.heads as usize);
     let weight = params.inv_count / heads as f32;
-    for (row, outputs) in rows.iter().zip(outputs.chunks_exact_mut(heads)) {
-        let recorded = row[row.len() - 1] > 0.5;
+    for (row, outputs) in rows.iter().zip(outputs.chunks_exact_mut(width)) {
+        let outputs = &mut outputs[..heads];
+        let recorded = row[window] > 0.5;
         let sign = if recorded { -1.0 } else { 1.0 };
         let sum: f32 = outputs.iter().sum();
         for out in outputs {

@@ -32,7 +32,7 @@ pub mod scale {
     pub const NEW_STD: usize = 3;
     /// 1 - variance of the critic's error / variance of its target.
     pub const EXPLAINED_VARIANCE: usize = 4;
-    /// Weight of the stream's advantages, which does not change.
+    /// Weight of the stream's advantages, which the learner decides on.
     pub const WEIGHT: usize = 5;
     /// Mean of the advantages, of each group.
     pub const ADVANTAGE_MEAN: usize = 6;

@@ -6,7 +6,9 @@ crate::shader_params! {
     pub struct Params for style_reward {
         /// Samples of the rollout.
         pub samples: u32,
-        /// Outputs of the discriminator.
+        /// Outputs of the network.
+        pub outputs: u32,
+        /// Those of them that are the discriminator's, which come first.
         pub heads: u32,
         /// 1 for the hinge loss, 0 for binary cross-entropy.
         pub hinge: u32,
@@ -18,7 +20,7 @@ const LEAST: f32 = 1e-4;
 
 /// Queues the shader on `gpu`.
 ///
-/// `output` is `[samples][heads]`, `reward` takes `[samples]`.
+/// `output` is `[samples][outputs]`, `reward` takes `[samples]`.
 pub fn launch(gpu: &Gpu, output: &Buffer<f32>, reward: &Buffer<f32>, params: &Params) {
     let groups = groups(&shader::STYLE_REWARD, params.samples as usize);
     gpu.launch(&shader::STYLE_REWARD, groups, &[output, reward], params);
@@ -26,9 +28,10 @@ pub fn launch(gpu: &Gpu, output: &Buffer<f32>, reward: &Buffer<f32>, params: &Pa
 
 /// The shader's computation on the host.
 pub fn twin(output: &[f32], reward: &mut [f32], params: &Params) {
-    let rows = output.chunks_exact(params.heads as usize);
+    let rows = output.chunks_exact(params.outputs as usize);
     for (reward, row) in reward.iter_mut().zip(rows).take(params.samples as usize) {
-        let sum: f32 = row.iter().map(|&out| reward_of(out, params)).sum();
+        let heads = &row[..params.heads as usize];
+        let sum: f32 = heads.iter().map(|&out| reward_of(out, params)).sum();
         *reward = sum / params.heads as f32;
     }
 }

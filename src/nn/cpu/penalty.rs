@@ -23,6 +23,7 @@ impl CpuEngine {
         network: usize,
         parameters: &Array,
         samples: Samples,
+        heads: usize,
         weight: f32,
         gradient: &mut [f32],
         sums: &mut [f32],
@@ -39,7 +40,15 @@ impl CpuEngine {
         let parts = values.par_chunks(PART_ROWS * width).map(|values| {
             let rows: Vec<&[f32]> = values.chunks_exact(width).collect();
             let mut gradient = vec![0.0; network.span().len()];
-            let square = penalty(network, flat, &transposed, &rows, factor, &mut gradient);
+            let square = penalty(
+                network,
+                flat,
+                &transposed,
+                &rows,
+                heads,
+                factor,
+                &mut gradient,
+            );
             (gradient, square)
         });
         let parts: Vec<(Vec<f32>, f32)> = parts.collect();
@@ -57,12 +66,12 @@ fn penalty(
     flat: &[f32],
     transposed: &[Vec<f32>],
     rows: &[&[f32]],
+    heads: usize,
     factor: f32,
     gradient: &mut [f32],
 ) -> f32 {
     let mut pass = Pass::default();
     pass.forward(network, flat, rows);
-    let heads = network.outputs();
     let backward = back(network, flat, transposed, &pass, heads);
     let slope = &backward[0];
     let square = slope.iter().map(|value| value * value).sum();
@@ -91,7 +100,7 @@ fn penalty(
     square
 }
 
-/// The gradient of the mean output with respect to the observation, then to the sums of every layer.
+/// The gradient of the mean of the heads with respect to the observation, then to the sums of every layer.
 fn back(
     network: &Network,
     flat: &[f32],
@@ -100,7 +109,9 @@ fn back(
     heads: usize,
 ) -> Vec<Vec<f32>> {
     let layers = network.layers();
-    let mut backward = vec![vec![1.0 / heads as f32; pass.rows * heads]];
+    let mut seed = vec![0.0; network.outputs()];
+    seed[..heads].fill(1.0 / heads as f32);
+    let mut backward = vec![seed.repeat(pass.rows)];
     for (number, params) in layers.iter().enumerate().rev() {
         let (above, input) = (&backward[backward.len() - 1], &pass.inputs[number]);
         let mut next =

@@ -128,6 +128,7 @@ impl Layerwise {
         network: usize,
         parameters: &Array,
         batch: Samples,
+        heads: usize,
         weight: f32,
         gradient: &mut Array,
         sums: &mut Array,
@@ -135,7 +136,7 @@ impl Layerwise {
         let (gpu, network) = (&self.gpu, &self.networks[network]);
         let flat = self.flat(parameters);
         let (pass, outputs) = Pass::new(network, &flat, self.observations(network, batch));
-        let (own, square) = pass.penalty(network, &flat, outputs, weight);
+        let (own, square) = pass.penalty(network, &flat, outputs, heads, weight);
         let sum = self.flat(gradient);
         let sum = part(&sum, network.span()).add(Tensor::cat(own, 0));
         write(gpu, sum, gradient, network.span().start);
@@ -190,17 +191,23 @@ impl Pass {
         (Pass { inputs }, values)
     }
 
-    /// The gradients, in the order of the parameters, of `weight` times the mean squared norm of the mean
-    /// output's gradient with respect to the observation; and the sum of these squared norms.
+    /// The gradients, in the order of the parameters, of `weight` times the mean squared norm of the
+    /// gradient of the mean of the heads with respect to the observation; and the sum of these squared norms.
     fn penalty(
         &self,
         network: &Network,
         flat: &Tensor<1>,
         outputs: Tensor<2>,
+        heads: usize,
         weight: f32,
     ) -> (Vec<Tensor<1>>, Tensor<1>) {
-        let [rows, heads] = outputs.dims();
-        let mut backward = vec![outputs.zeros_like().add_scalar(1.0 / heads as f32)];
+        let [rows, width] = outputs.dims();
+        let seed = outputs.narrow(1, 0, heads).zeros_like();
+        let mut seed = vec![seed.add_scalar(1.0 / heads as f32)];
+        if width > heads {
+            seed.push(Tensor::zeros([rows, width - heads], &seed[0].device()));
+        }
+        let mut backward = vec![Tensor::cat(seed, 1)];
         for (number, params) in network.layers().iter().enumerate().rev() {
             let mut next = input_gradient(params, flat, backward[backward.len() - 1].clone());
             if let Some(below) = number.checked_sub(1) {

@@ -1,7 +1,7 @@
 //! Operations on tensors that burn has not, or not for devices like lavapipe.
 
 use crate::gpu::tensor::{from_buffer, to_buffer};
-use crate::gpu::{Array, Buffer, Gpu};
+use crate::gpu::{Array, Gpu};
 use burn::tensor::{Int, Tensor};
 use std::ops::Range;
 
@@ -55,12 +55,17 @@ pub fn pick(gpu: &Gpu, from: &Array, width: usize, numbers: &[u32]) -> Array {
     Array::Gpu(to_buffer(all.select(0, numbers).flatten::<1>(0, 1)))
 }
 
-/// See [`crate::nn::rows::labelled`].
-pub fn labelled(gpu: &Gpu, from: &Array, width: usize, labels: &[f32]) -> Array {
-    let values = rows(gpu, from, width);
-    let labels = Array::Gpu(Buffer::from_slice(gpu, labels));
-    let both = Tensor::cat(vec![values, rows(gpu, &labels, 1)], 1);
-    Array::Gpu(to_buffer(both.flatten::<1>(0, 1)))
+/// See [`crate::nn::rows::beside`].
+pub fn beside(gpu: &Gpu, parts: &[(&Array, usize)]) -> Array {
+    let parts = parts.iter().map(|(part, width)| rows(gpu, part, *width));
+    let whole = Tensor::cat(parts.collect(), 1);
+    Array::Gpu(to_buffer(whole.flatten::<1>(0, 1)))
+}
+
+/// See [`crate::nn::rows::columns`].
+pub fn columns(gpu: &Gpu, from: &Array, width: usize, range: Range<usize>) -> Array {
+    let part = rows(gpu, from, width).narrow(1, range.start, range.len());
+    Array::Gpu(to_buffer(part.flatten::<1>(0, 1)))
 }
 
 /// See [`crate::nn::rows::join`].

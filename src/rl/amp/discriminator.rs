@@ -1,14 +1,13 @@
 //! Tells recorded motion from that of agents, and rewards agents for what it takes for recorded.
 
 use super::adaptive_steps::AdaptiveSteps;
-use super::loss::{SUMS, TellApart};
-
+use super::loss::{COSINE, SUMS, TellApart};
 use super::replay::Replay;
-use super::{Amp, DiscriminatorLoss};
+use super::{Amp, DiscriminatorLoss, LatentUse};
 use crate::container::{Section, SectionError};
 use crate::env::Demonstrations;
 use crate::gpu::{Array, Device};
-use crate::kernels::learn::{style_reward, style_windows};
+use crate::kernels::learn::{skill_reward, style_reward, style_windows};
 use crate::kernels::rng::{gaussian, index_below, random4};
 use crate::nn::layer::Activation;
 use crate::nn::network::{Network, NetworkConfig};
@@ -24,6 +23,7 @@ const STREAM: u32 = 0x4449_5343;
 /// A discriminator of windows of two moments, with what it needs to learn.
 pub struct Discriminator {
     config: Amp,
+    latents: LatentUse,
     device: Device,
     demonstrations: Arc<Demonstrations>,
     /// `[n][dim]`
@@ -37,30 +37,34 @@ pub struct Discriminator {
     replay: Replay,
     /// Windows of the present rollouts, `[samples][dim]`.
     fresh: Array,
+    /// The latents that an encoder is to find in them, `[samples][found]`.
+    fresh_latents: Array,
     sums: Array,
     /// Sum of the penalties' squared norms.
     penalties: Array,
-    /// Sum of the style rewards of the present rollouts.
-    style: Array,
+    /// Sum of the skill rewards of the present rollouts.
+    skill: Array,
     steps: AdaptiveSteps,
     updates: u64,
     seed: u32,
 }
 
 impl Discriminator {
-    /// A discriminator that is new to agents of `samples` samples an update.
+    /// A discriminator that is new to agents of `samples` samples an update. Where it is shown latents, the
+    /// demonstrations' windows end with them.
     ///
     /// # Errors
     /// There can be no such network, or not on this device.
     pub fn new(
         config: &Amp,
+        latents: LatentUse,
         demonstrations: &Arc<Demonstrations>,
         device: &Device,
         samples: usize,
         seed: u32,
     ) -> Result<Self> {
         let dim = demonstrations.dim;
-        let network = network(config, dim)?;
+        let network = network(config, dim, latents)?;
         let parameters = network.span().len();
         let size = EngineSize {
             parameters,
@@ -77,13 +81,15 @@ impl Discriminator {
             normalizer: RunningMeanStd::new(device, dim),
             replay: Replay::new(device, config.replay_capacity, dim),
             fresh: Array::zeroed(device, 0),
+            fresh_latents: Array::zeroed(device, 0),
             sums: Array::zeroed(device, SUMS),
             penalties: Array::zeroed(device, 1),
-            style: Array::zeroed(device, 1),
+            skill: Array::zeroed(device, 1),
             steps: AdaptiveSteps::new(config.steps),
             updates: 0,
             seed,
             config: config.clone(),
+            latents,
             device: device.clone(),
             demonstrations: demonstrations.clone(),
             network,
@@ -94,40 +100,83 @@ impl Discriminator {
         self.demonstrations.dim
     }
 
-    /// Fills in the style reward of rollouts whose observations are raw.
+    /// Fills in the rewards of rollouts whose observations are raw: of the style, and of an encoder's finding
+    /// the latents.
     pub fn reward(&mut self, rollouts: &mut [Rollout]) {
-        let windows: Vec<Array> = rollouts
-            .iter()
-            .map(|rollout| self.windows(rollout))
-            .collect();
-        self.style = Array::zeroed(&self.device, 1);
-        for (rollout, windows) in rollouts.iter_mut().zip(&windows) {
-            let samples = rollout.samples();
-            let mut seen = windows.clone();
-            self.normalizer.normalize_in_place(&mut seen, samples);
-            let heads = self.config.heads;
-            let mut output = Array::zeroed(&self.device, samples * heads);
-            self.engine
-                .forward(0, &self.parameters, &seen, 0, samples, &mut output, 0);
-            let params = style_reward::Params {
-                samples: samples as u32,
-                heads: heads as u32,
-                hinge: u32::from(self.config.loss == DiscriminatorLoss::Hinge),
-            };
-            let reward = &mut rollout.style_reward;
-            match &self.device {
-                Device::Cpu => style_reward::twin(output.host(), reward.host_mut(), &params),
-                Device::Gpu(gpu) => {
-                    style_reward::launch(gpu, output.buffer(), reward.buffer(), &params);
-                }
+        self.skill = Array::zeroed(&self.device, 1);
+        let (mut fresh, mut fresh_latents) = (Vec::new(), Vec::new());
+        for rollout in rollouts {
+            let latents = self.latents_of(rollout);
+            let windows = self.windows(rollout, &latents);
+            let output = self.output(&windows, rollout.samples());
+            self.reward_style(&output, rollout);
+            if self.latents.found() > 0 {
+                self.reward_skill(&output, &latents, rollout);
             }
-            rows::add_sum(&self.device, reward, &mut self.style);
+            fresh.push(windows);
+            fresh_latents.push(latents);
         }
-        self.fresh = rows::join(&self.device, &windows.iter().collect::<Vec<_>>());
+        self.fresh = rows::join(&self.device, &fresh.iter().collect::<Vec<_>>());
+        self.fresh_latents = rows::join(&self.device, &fresh_latents.iter().collect::<Vec<_>>());
+    }
+
+    /// The latents of a rollout, `[samples][latent]`.
+    fn latents_of(&self, rollout: &Rollout) -> Array {
+        let width = rollout.spec.observation.dim();
+        let range = width - self.latents.dim()..width;
+        match range.is_empty() {
+            true => Array::zeroed(&self.device, 0),
+            false => rows::columns(&self.device, &rollout.observation, width, range),
+        }
+    }
+
+    /// The network's outputs for so many windows, `[samples][outputs]`.
+    fn output(&self, windows: &Array, samples: usize) -> Array {
+        let mut seen = windows.clone();
+        self.normalizer.normalize_in_place(&mut seen, samples);
+        let mut output = Array::zeroed(&self.device, samples * self.network.outputs());
+        self.engine
+            .forward(0, &self.parameters, &seen, 0, samples, &mut output, 0);
+        output
+    }
+
+    fn reward_style(&self, output: &Array, rollout: &mut Rollout) {
+        let params = style_reward::Params {
+            samples: rollout.samples() as u32,
+            outputs: self.network.outputs() as u32,
+            heads: self.config.heads as u32,
+            hinge: u32::from(self.config.loss == DiscriminatorLoss::Hinge),
+        };
+        let reward = &mut rollout.style_reward;
+        match &self.device {
+            Device::Cpu => style_reward::twin(output.host(), reward.host_mut(), &params),
+            Device::Gpu(gpu) => {
+                style_reward::launch(gpu, output.buffer(), reward.buffer(), &params);
+            }
+        }
+    }
+
+    fn reward_skill(&mut self, output: &Array, latents: &Array, rollout: &mut Rollout) {
+        let params = skill_reward::Params {
+            samples: rollout.samples() as u32,
+            outputs: self.network.outputs() as u32,
+            heads: self.config.heads as u32,
+        };
+        let reward = &mut rollout.skill_reward;
+        match &self.device {
+            Device::Cpu => {
+                skill_reward::twin(output.host(), latents.host(), reward.host_mut(), &params);
+            }
+            Device::Gpu(gpu) => {
+                let (output, latents) = (output.buffer(), latents.buffer());
+                skill_reward::launch(gpu, output, latents, reward.buffer(), &params);
+            }
+        }
+        rows::add_sum(&self.device, reward, &mut self.skill);
     }
 
     /// The windows of a rollout, `[samples][dim]`.
-    fn windows(&self, rollout: &Rollout) -> Array {
+    fn windows(&self, rollout: &Rollout, latents: &Array) -> Array {
         let spec = &rollout.spec;
         let params = style_windows::Params {
             steps: rollout.steps as u32,
@@ -136,7 +185,8 @@ impl Discriminator {
             style: spec.style as u32,
             final_steps: spec.final_steps(rollout.steps) as u32,
         };
-        let mut windows = Array::zeroed(&self.device, rollout.samples() * self.dim());
+        let window = self.dim() - self.latents.shown();
+        let mut windows = Array::zeroed(&self.device, rollout.samples() * window);
         match &self.device {
             Device::Cpu => style_windows::twin(
                 rollout.observation.host(),
@@ -156,7 +206,12 @@ impl Discriminator {
                 &params,
             ),
         }
-        windows
+        match self.latents {
+            LatentUse::Shown(dim) => {
+                rows::beside(&self.device, &[(&windows, window), (latents, dim)])
+            }
+            LatentUse::None | LatentUse::Found(_) => windows,
+        }
     }
 
     /// Learns from the windows that [`Discriminator::reward`] saw last.
@@ -232,15 +287,31 @@ impl Discriminator {
         let mut windows = rows::join(&self.device, &parts.iter().collect::<Vec<_>>());
         self.normalizer.normalize_in_place(&mut windows, 2 * count);
         let labels = [vec![1.0; count], vec![0.0; count]].concat();
-        let samples = rows::labelled(&self.device, &windows, dim, &labels);
+        let labels = Array::from_slice(&self.device, &labels);
+        let latent = self.latents.found();
+        let found = match latent {
+            0 => None,
+            _ => Some(self.latents_to_find(&numbers[1], 2 * count)),
+        };
+        let columns = [(&windows, dim), (&labels, 1)];
+        let columns: Vec<_> = columns
+            .into_iter()
+            .chain(found.as_ref().map(|found| (found, latent)))
+            .collect();
+        let samples = rows::beside(&self.device, &columns);
+        let width = dim + 1 + latent;
         let objective = TellApart {
             loss: self.config.loss,
+            window: dim,
+            heads: self.config.heads,
+            latent,
             inv_count: 0.5 / count as f32,
+            inv_latents: 1.0 / (count - half) as f32,
         };
         self.engine.gradient(
             &self.parameters,
             &samples,
-            dim + 1,
+            width,
             Rows::Range(0..2 * count),
             &objective,
             &mut self.gradient,
@@ -250,8 +321,9 @@ impl Discriminator {
             0,
             &self.parameters,
             &samples,
-            dim + 1,
+            width,
             0..count,
+            self.config.heads,
             self.config.gradient_penalty,
             &mut self.gradient,
             &mut self.penalties,
@@ -269,29 +341,48 @@ impl Discriminator {
             .step(&mut self.parameters, &self.gradient, rate, max);
     }
 
-    /// Closes an update: the style reward of a step, what the discriminator lost, and how often it was right,
-    /// by their names in `metrics.jsonl`.
+    /// The latents of a step's samples, `[samples][latent]`: those of fresh windows by their numbers, which
+    /// follow as many recorded ones as half of the samples; zero for all others.
+    fn latents_to_find(&self, fresh: &[u32], samples: usize) -> Array {
+        let latent = self.latents.found();
+        let none = |rows: usize| Array::zeroed(&self.device, rows * latent);
+        let found = rows::pick(&self.device, &self.fresh_latents, latent, fresh);
+        let before = samples / 2;
+        let parts = [none(before), found, none(samples - before - fresh.len())];
+        let parts: Vec<&Array> = parts.iter().filter(|part| !part.is_empty()).collect();
+        rows::join(&self.device, &parts)
+    }
+
+    /// Closes an update whose style reward of a step is known: what the discriminator lost, and how often it was
+    /// right, by their names in `metrics.jsonl`.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn conclude(&mut self) -> Result<Vec<(&'static str, f64)>> {
+    pub fn conclude(&mut self, style: f64) -> Result<Vec<(&'static str, f64)>> {
         let sums = self.sums.read(&self.device)?;
         let penalties = self.penalties.read(&self.device)?[0];
-        let samples = (self.fresh.len() / self.dim()).max(1);
-        let style = f64::from(self.style.read(&self.device)?[0]) / samples as f64;
         let of = |i: usize| f64::from(sums[i]);
         let recorded = of(1).max(1.0);
         let agents = of(4) / of(3).max(1.0);
         let steps = self.steps.count();
         self.steps.update(agents, style);
-        Ok(vec![
-            ("style_reward", style),
+        let mut measures = vec![
             ("discriminator_steps", steps as f64),
             ("discriminator_loss", of(0) / (of(1) + of(3)).max(1.0)),
             ("discriminator_penalty", f64::from(penalties) / recorded),
             ("recorded_accuracy", of(2) / recorded),
             ("agent_accuracy", agents),
-        ])
+        ];
+        if self.latents.found() > 0 {
+            let samples = (self.fresh.len() / self.dim()).max(1);
+            let skill = f64::from(self.skill.read(&self.device)?[0]) / samples as f64;
+            // Of the agents' windows of a step, the fresh ones have a latent.
+            let count = self.config.minibatch_size;
+            let found = of(3) * (count - count / 2) as f64 / count as f64;
+            measures.push(("skill_reward", skill));
+            measures.push(("encoder_cosine", of(COSINE) / found.max(1.0)));
+        }
+        Ok(measures)
     }
 
     /// Saves all that it needs to go on as if it had never stopped.
@@ -323,11 +414,16 @@ impl Discriminator {
     }
 }
 
-/// The network of a discriminator of windows of `dim` numbers.
+/// The network of a discriminator of windows of `dim` numbers, latents that it is shown included; the outputs of
+/// an encoder are behind its heads, on the same trunk.
 ///
 /// # Errors
 /// There can be no such network.
-pub fn network(config: &Amp, dim: usize) -> Result<Network, crate::nn::NetworkError> {
+pub fn network(
+    config: &Amp,
+    dim: usize,
+    latents: LatentUse,
+) -> Result<Network, crate::nn::NetworkError> {
     let hidden = NetworkConfig {
         convolutions: Vec::new(),
         encoder_hidden: Vec::new(),
@@ -338,7 +434,7 @@ pub fn network(config: &Amp, dim: usize) -> Result<Network, crate::nn::NetworkEr
         vector: dim,
         grid: None,
     };
-    Network::new(&hidden, &window, config.heads, 0)
+    Network::new(&hidden, &window, config.heads + latents.found(), 0)
 }
 
 /// Gaussian weights that keep the variance through ReLUs, and zero biases.

@@ -1,12 +1,13 @@
 //! PPO whose agents are rewarded for their style.
 
-use super::{Amp, Discriminator};
+use super::{Amp, Discriminator, SkillRewards};
 use crate::container::{Section, SectionError};
 use crate::env::{Demonstrations, EnvBatch};
 use crate::gpu::Device;
 use crate::nn::Policy;
 use crate::rl::gae::RewardSource;
-use crate::rl::ppo::{Ppo, PpoLearner};
+use crate::rl::ppo::{Diversity, Ppo, PpoLearner};
+use crate::rl::task_weight::TaskWeight;
 use crate::rl::{Algorithm, Iteration};
 use anyhow::{Result, bail};
 use std::sync::Arc;
@@ -19,13 +20,15 @@ pub struct AmpLearner {
 }
 
 impl AmpLearner {
-    /// A learner for the environments of a training, whose agents are to move as in the demonstrations.
+    /// A learner for the environments of a training, whose agents are to move as in the demonstrations; and
+    /// differently under different latents, if the environments have any.
     ///
     /// # Errors
     /// A network does not fit the observation, or the device.
     pub fn new(
         ppo: &Ppo,
         amp: &Amp,
+        skills: &SkillRewards,
         demonstrations: &Arc<Demonstrations>,
         envs: &EnvBatch,
         device: &Device,
@@ -34,16 +37,29 @@ impl AmpLearner {
         let rewards = [
             (RewardSource::Task, amp.task_weight),
             (RewardSource::Style, amp.style_weight),
+            (RewardSource::Skill, skills.weight),
         ];
         let rewards: Vec<_> = rewards
             .into_iter()
             .filter(|(_, weight)| *weight > 0.0)
             .collect();
         let samples = ppo.rollout_length * envs.spec().rows();
+        let latents = skills.latents;
+        let diversity = Diversity {
+            latent: latents.dim(),
+            weight: skills.diversity,
+        };
+        let learner = PpoLearner::with_rewards(ppo, envs, device, seed, &rewards)?;
         Ok(AmpLearner {
-            ppo: PpoLearner::with_rewards(ppo, envs, device, seed, &rewards)?,
-            discriminator: Discriminator::new(amp, demonstrations, device, samples, seed)?,
+            ppo: learner.with_diversity(diversity),
+            discriminator: Discriminator::new(amp, latents, demonstrations, device, samples, seed)?,
         })
+    }
+
+    /// The same learner whose rewards of task and style, if it has both, are weighed so.
+    pub fn with_task_weight(mut self, weight: TaskWeight) -> Self {
+        self.ppo = self.ppo.with_task_weight(weight);
+        self
     }
 }
 
@@ -57,7 +73,8 @@ impl Algorithm for AmpLearner {
         self.ppo.learn();
         self.discriminator.learn();
         let mut iteration = self.ppo.conclude(envs, steps, begin, [policy_s, env_s])?;
-        iteration.losses.extend(self.discriminator.conclude()?);
+        let style = iteration.loss("style_reward").unwrap_or(0.0);
+        iteration.losses.extend(self.discriminator.conclude(style)?);
         match iteration
             .losses
             .iter()

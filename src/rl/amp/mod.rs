@@ -2,17 +2,22 @@
 //! of the agents, who are rewarded for being taken for recordings.
 //!
 //! [`Amp`] holds what may be chosen, [`discriminator`] learns and rewards, [`learner`] is PPO with both; a
-//! [`frozen_discriminator`] is what is left when learning is over.
+//! [`frozen_discriminator`] is what is left when learning is over, and a [`BatchDiscriminator`] the same on a
+//! device. [`LatentUse`] is what a discriminator makes of the latents of [skills](super::ase).
 
 mod adaptive_steps;
+mod batch_discriminator;
 pub mod discriminator;
 pub mod frozen_discriminator;
+pub mod latent_use;
 pub mod learner;
 mod loss;
 mod replay;
 
+pub use batch_discriminator::BatchDiscriminator;
 pub use discriminator::Discriminator;
 pub use frozen_discriminator::FrozenDiscriminator;
+pub use latent_use::{LatentUse, SkillRewards};
 pub use learner::AmpLearner;
 use serde::{Deserialize, Serialize};
 
@@ -53,10 +58,17 @@ pub struct Amp {
     pub replay_capacity: usize,
     /// Windows of each update that enter the replay, in place of the oldest.
     pub replay_per_update: usize,
-    /// Weight of the advantages of the style reward.
+    /// Weight of the advantages of the style reward; where a rule finds the weights, what they begin with.
     pub style_weight: f32,
-    /// Weight of the advantages of the task's reward; 0 if the task has none.
+    /// Weight of the advantages of the task's reward, likewise; 0 if the task has none.
     pub task_weight: f32,
+}
+
+impl Amp {
+    /// Ratio of the weights of task and style.
+    pub fn lambda(&self) -> f64 {
+        f64::from(self.task_weight) / f64::from(self.style_weight)
+    }
 }
 
 impl Default for Amp {

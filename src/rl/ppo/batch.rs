@@ -3,7 +3,7 @@
 use crate::gpu::{Array, Buffer, Device};
 use crate::kernels::learn::gather_samples::{Params, launch, twin, width};
 use crate::kernels::learn::rollout_moments::scale::FIELDS;
-use crate::nn::Rows;
+use crate::nn::{Rows, rows};
 use crate::rl::rollout::Rollout;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -13,6 +13,8 @@ use std::ops::Range;
 pub struct Batch<'a> {
     device: &'a Device,
     rollouts: &'a [Rollout],
+    /// What all samples end with, `[samples][more]`, in the rollouts' order.
+    more: Option<Array>,
     /// `[streams][FIELDS]`, see [`crate::kernels::learn::rollout_moments::scale`].
     scale: Array,
     /// `[samples][width]`
@@ -24,8 +26,13 @@ pub struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// All samples of `rollouts`, normalised by `scale`.
-    pub fn new(device: &'a Device, rollouts: &'a [Rollout], scale: Array) -> Self {
+    /// All samples of `rollouts`, normalised by `scale`; each ends with a row of `more`, if there is any.
+    pub fn new(
+        device: &'a Device,
+        rollouts: &'a [Rollout],
+        scale: Array,
+        more: Option<Array>,
+    ) -> Self {
         let spec = &rollouts[0].spec;
         let samples: usize = rollouts.iter().map(Rollout::samples).sum();
         let streams = scale.len() / FIELDS;
@@ -33,6 +40,7 @@ impl<'a> Batch<'a> {
         let mut batch = Batch {
             device,
             rollouts,
+            more,
             scale,
             rows: Array::zeroed(device, samples * width),
             width,
@@ -40,6 +48,10 @@ impl<'a> Batch<'a> {
         };
         if let Device::Cpu = device {
             batch.gather_on_host();
+            if let Some(more) = batch.more.take() {
+                batch.rows = batch.joined(&more);
+                batch.width = batch.rows.len() / samples;
+            }
         }
         batch
     }
@@ -53,6 +65,10 @@ impl<'a> Batch<'a> {
     pub fn begin_epoch(&mut self, order: Vec<u32>) {
         if let Device::Gpu(gpu) = self.device {
             let rollout = &self.rollouts[0];
+            let own = self.own_width();
+            if self.width > own {
+                self.rows = Array::zeroed(self.device, self.samples() * own);
+            }
             launch(
                 gpu,
                 &Buffer::from_slice(gpu, &order),
@@ -65,8 +81,28 @@ impl<'a> Batch<'a> {
                 self.rows.buffer(),
                 &self.params(rollout),
             );
+            if let Some(more) = &self.more {
+                let width = more.len() / self.samples();
+                self.rows = self.joined(&rows::pick(self.device, more, width, &order));
+                self.width = own + width;
+            }
         }
         self.order = order;
+    }
+
+    /// The rows with those of `more` behind them.
+    fn joined(&self, more: &Array) -> Array {
+        let parts = [
+            (&self.rows, self.own_width()),
+            (more, more.len() / self.samples()),
+        ];
+        rows::beside(self.device, &parts)
+    }
+
+    /// Numbers of a row without what it ends with.
+    fn own_width(&self) -> usize {
+        let spec = &self.rollouts[0].spec;
+        width(spec.observation.dim(), spec.action, self.streams())
     }
 
     /// The rows of a minibatch of the epoch.

@@ -2,17 +2,18 @@
 
 use super::Ppo;
 use super::batch::Batch;
-use super::loss::{LossCoefficients, PpoLoss, SUMS};
+use super::loss::{Diversity, LossCoefficients, PpoLoss, SUMS};
 use crate::container::{Section, SectionError};
 use crate::env::{EnvBatch, EnvSpec, Stats, VecEnv};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::rollout_moments::scale;
 use crate::kernels::learn::{adapt_lr, sample_action};
-use crate::kernels::rng::permutation;
+use crate::kernels::rng::{index_below, permutation, random4};
 use crate::nn::{ActorCritic, Adam, Engine, Network, Policy, RunningMeanStd, rows};
 use crate::rl::gae::{Bootstrap, RewardSource, gae};
 use crate::rl::rollout::Rollout;
 use crate::rl::sample_action::sample_action;
+use crate::rl::task_weight::TaskWeight;
 use crate::rl::value_normalizer::ValueNormalizer;
 use crate::rl::{Algorithm, Iteration};
 use anyhow::{Result, bail};
@@ -22,6 +23,8 @@ use std::time::Instant;
 
 /// First random stream of the shuffles.
 const SHUFFLE: u32 = 0x5348_5546;
+/// Random stream of the pairs of latents.
+const OTHER_LATENT: u32 = 0x4f54_4845;
 /// Factor by which learning rate and KL penalty are adapted.
 const LR_FACTOR: f64 = 1.5;
 /// Range of an adapted learning rate.
@@ -50,6 +53,9 @@ pub struct PpoLearner {
     observation_normalizer: Option<RunningMeanStd>,
     /// Where the streams of rewards come from.
     sources: Vec<RewardSource>,
+    diversity: Diversity,
+    /// What decides on their weights, if the style is one of them.
+    task_weight: Option<TaskWeight>,
     /// Rollouts of the present iteration, one for each part of the environments.
     pub(in crate::rl) rollouts: Vec<Rollout>,
     gradient: Array,
@@ -120,7 +126,11 @@ impl PpoLearner {
             adam: adam(config, &networks, device),
             value_normalizer: ValueNormalizer::new(device, &weights),
             observation_normalizer: config.normalize_observations.then(normalizer),
+            task_weight: sources
+                .contains(&RewardSource::Style)
+                .then(TaskWeight::fixed),
             sources,
+            diversity: Diversity::default(),
             rollouts: Vec::new(),
             gradient: Array::zeroed(device, parameters),
             sums: Array::zeroed(device, SUMS),
@@ -135,6 +145,21 @@ impl PpoLearner {
             networks,
             engine,
         })
+    }
+
+    /// The same learner, whose latents are to lead to different actions.
+    pub fn with_diversity(self, diversity: Diversity) -> Self {
+        PpoLearner { diversity, ..self }
+    }
+
+    /// The same learner whose rewards of task and style, if it has both, are weighed so.
+    pub fn with_task_weight(mut self, weight: TaskWeight) -> Self {
+        let wanted = [RewardSource::Task, RewardSource::Style];
+        if wanted.iter().all(|source| self.sources.contains(source)) {
+            self.task_weight = Some(weight);
+            self.set_weights();
+        }
+        self
     }
 
     /// Plays a rollout of all environments, the batch's parts one after another or at once. Returns
@@ -306,7 +331,8 @@ impl PpoLearner {
         let mut rollouts = std::mem::take(&mut self.rollouts);
         self.value_normalizer.normalize_advantages(&mut rollouts);
         let device = self.device.clone();
-        let mut batch = Batch::new(&device, &rollouts, self.value_normalizer.scale().clone());
+        let scale = self.value_normalizer.scale().clone();
+        let mut batch = Batch::new(&device, &rollouts, scale, self.under_other_latents(&rollouts));
         let samples = batch.samples();
         for epoch in 0..self.config.epochs {
             let stream = SHUFFLE + epoch as u32;
@@ -321,6 +347,43 @@ impl PpoLearner {
         self.rollouts = rollouts;
     }
 
+    /// The mean action of every sample of rollouts under the latent of another, and that latent,
+    /// `[samples][action + latent]`, if latents are to lead to different actions.
+    fn under_other_latents(&self, rollouts: &[Rollout]) -> Option<Array> {
+        let width = self.diversity.width(self.spec.action);
+        if width == 0 {
+            return None;
+        }
+        let parts: Vec<Array> = rollouts
+            .iter()
+            .map(|rollout| self.under_another(rollout))
+            .collect();
+        Some(rows::join(
+            &self.device,
+            &parts.iter().collect::<Vec<_>>(),
+        ))
+    }
+
+    fn under_another(&self, rollout: &Rollout) -> Array {
+        let (device, latent) = (&self.device, self.diversity.latent);
+        let (width, samples) = (self.spec.observation.dim(), rollout.samples());
+        let body = width - latent;
+        // Another environment's: its latent is as likely as any.
+        let most = rollout.spec.rows().max(2) as u32 - 1;
+        let [bits, ..] = random4(self.seed, 0, self.updates as u32, OTHER_LATENT);
+        let shift = 1 + index_below(bits, most) as usize;
+        let numbers: Vec<u32> = (0..samples)
+            .map(|at| ((at + shift) % samples) as u32)
+            .collect();
+        let columns = |range| rows::columns(device, &rollout.observation, width, range);
+        let other = rows::pick(device, &columns(body..width), latent, &numbers);
+        let seen = rows::beside(device, &[(&columns(0..body), body), (&other, latent)]);
+        let mut mean = Array::zeroed(device, samples * self.spec.action);
+        self.engine
+            .forward(ACTOR, &self.parameters, &seen, 0, samples, &mut mean, 0);
+        rows::beside(device, &[(&mean, self.spec.action), (&other, latent)])
+    }
+
     /// One gradient step on a minibatch.
     fn step(&mut self, batch: &Batch, samples: Range<usize>) {
         let objective = PpoLoss {
@@ -328,6 +391,8 @@ impl PpoLearner {
             values: self.sources.len(),
             log_std: self.networks.log_std(),
             old_log_std: &self.log_std,
+            observation: self.spec.observation.dim(),
+            diversity: self.diversity,
             coefficients: LossCoefficients {
                 inv_count: 1.0 / samples.len() as f32,
                 ..LossCoefficients::new(&self.config, self.kl_coefficient)
@@ -403,17 +468,51 @@ impl PpoLearner {
         }
     }
 
+    /// Takes in the style reward of an update that moved the actor, and weighs its rewards anew.
+    fn weigh(&mut self, style: Option<f64>) {
+        if self.updates <= self.actor_from {
+            return;
+        }
+        if let (Some(weight), Some(style)) = (&mut self.task_weight, style) {
+            weight.update(style);
+            self.set_weights();
+        }
+    }
+
+    /// Gives the advantages of task and style their weights, where a rule finds them.
+    fn set_weights(&mut self) {
+        let weights = self.task_weight.as_ref().and_then(TaskWeight::weights);
+        for (source, weight) in weights.into_iter().flatten() {
+            let stream = self.sources.iter().position(|own| *own == source);
+            if let Some(stream) = stream {
+                self.value_normalizer.set_weight(stream, weight);
+            }
+        }
+    }
+
+    /// The objective's sums over the last epoch; behind them that of the style rewards, if there are any.
+    fn read_sums(&self) -> Result<Vec<f32>> {
+        if self.task_weight.is_none() {
+            return self.sums.read(&self.device);
+        }
+        let mut style = Array::zeroed(&self.device, 1);
+        for rollout in &self.rollouts {
+            rows::add_sum(&self.device, &rollout.style_reward, &mut style);
+        }
+        rows::join(&self.device, &[&self.sums, &style]).read(&self.device)
+    }
+
     /// Means over the last epoch, and what else is worth a curve.
     ///
     /// # Errors
     /// The device was lost; or a number is not finite.
     fn losses(&mut self) -> Result<Vec<(&'static str, f64)>> {
         let samples: usize = self.rollouts.iter().map(Rollout::samples).sum();
-        let sums = self.sums.read(&self.device)?;
+        let sums = self.read_sums()?;
         let grad_norm = self.adam.grad_norm()?;
         let scale = self.value_normalizer.advance()?;
         let mean = |i: usize| f64::from(sums[i]) / samples as f64;
-        let losses = vec![
+        let mut losses = vec![
             ("policy_loss", mean(0)),
             ("value_loss", mean(1)),
             ("entropy", mean(2)),
@@ -429,6 +528,10 @@ impl PpoLearner {
                 self.learning_rate * f64::from(self.adam.rate()?),
             ),
         ];
+        if let Some(weight) = &self.task_weight {
+            losses.push(("style_reward", mean(SUMS)));
+            losses.extend(weight.metrics());
+        }
         match losses.iter().find(|(_, value)| !value.is_finite()) {
             None => Ok(losses),
             Some((name, value)) => bail!(
@@ -461,15 +564,17 @@ impl PpoLearner {
             );
         }
         let samples: usize = self.rollouts.iter().map(Rollout::samples).sum();
-        let kl = losses.iter().find(|(name, _)| *name == "kl");
-        self.adapt(kl.map_or(0.0, |(_, kl)| *kl), steps + samples as u64);
-        Ok(Iteration {
+        let iteration = Iteration {
             losses,
             stats,
             policy_s,
             env_s,
             learn_s: begin.elapsed().as_secs_f64() - policy_s - env_s,
-        })
+        };
+        let kl = iteration.loss("kl").unwrap_or(0.0);
+        self.adapt(kl, steps + samples as u64);
+        self.weigh(iteration.loss("style_reward"));
+        Ok(iteration)
     }
 }
 
@@ -529,7 +634,7 @@ impl Algorithm for PpoLearner {
         Ok(policy)
     }
 
-    fn start_from(&mut self, policy: &Policy, _: &mut Section) -> Result<(), SectionError> {
+    fn start_from(&mut self, policy: &Policy, section: &mut Section) -> Result<(), SectionError> {
         let lost = |error: anyhow::Error| SectionError(error.to_string());
         let mut flat = self.parameters.read(&self.device).map_err(lost)?;
         adopt_actor(
@@ -544,12 +649,20 @@ impl Algorithm for PpoLearner {
             *own = other.widened(own.dim()).on(&self.device);
         }
         self.actor_from = CRITIC_ALONE;
-        Ok(())
+        match &mut self.task_weight {
+            None => Ok(()),
+            Some(weight) => weight.start_from(&mut section.take_section("task_weight")),
+        }
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {
         to.put("updates", [self.updates, self.actor_from]);
         to.put_array("rates", &[self.learning_rate, self.kl_coefficient]);
+        if let Some(weight) = &self.task_weight {
+            let mut own = Section::default();
+            weight.save(&mut own);
+            to.put_section("task_weight", own);
+        }
         self.adam.save(to)?;
         self.value_normalizer.save(to)
     }
@@ -561,6 +674,9 @@ impl Algorithm for PpoLearner {
             return Err(SectionError("its rates are not finite".to_string()));
         }
         (self.learning_rate, self.kl_coefficient) = (rates[0], rates[1]);
+        if let Some(weight) = &mut self.task_weight {
+            weight.load(&mut from.take_section("task_weight"))?;
+        }
         self.adam.load(from)?;
         self.value_normalizer.load(from)?;
         self.parameters = Array::from_slice(&self.device, &policy.parameters);

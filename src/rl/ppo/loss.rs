@@ -2,6 +2,7 @@
 
 use super::Ppo;
 use crate::gpu::{Array, Gpu};
+use crate::kernels::learn::diversity_loss;
 use crate::kernels::learn::ppo_loss::{self, Params};
 use crate::nn::objective::{GpuBatch, HostBatch, Objective};
 use std::ops::Range;
@@ -55,6 +56,30 @@ pub struct PpoLoss<'a> {
     pub old_log_std: &'a Array,
     /// Weights and clip ranges of the loss.
     pub coefficients: LossCoefficients,
+    /// Numbers of an observation.
+    pub observation: usize,
+    /// What latents are to lead to.
+    pub diversity: Diversity,
+}
+
+/// The loss of latents that lead to the same actions: see [`diversity_loss`]. A sample then ends with the mean
+/// action under another latent, and that latent.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Diversity {
+    /// Numbers of a latent, the last of an observation.
+    pub latent: usize,
+    /// Weight of the loss; 0 for none.
+    pub weight: f32,
+}
+
+impl Diversity {
+    /// Numbers that a sample ends with.
+    pub fn width(&self, action: usize) -> usize {
+        match self.weight > 0.0 && self.latent > 0 {
+            true => action + self.latent,
+            false => 0,
+        }
+    }
 }
 
 impl PpoLoss<'_> {
@@ -73,26 +98,50 @@ impl PpoLoss<'_> {
             inv_count: coefficients.inv_count,
         }
     }
+
+    fn diversity_params(&self) -> diversity_loss::Params {
+        diversity_loss::Params {
+            rows: 0,
+            start: 0,
+            width: 0,
+            latent: self.diversity.latent as u32,
+            weight: self.diversity.weight * self.coefficients.inv_count,
+        }
+    }
+
+    /// Where a sample ends for PPO.
+    fn own<'a>(&self, row: &&'a [f32]) -> &'a [f32] {
+        &row[..row.len() - self.diversity.width(self.action)]
+    }
 }
 
 impl Objective for PpoLoss<'_> {
     fn loss_gradient(&self, batch: &HostBatch, outputs: &mut [f32], extras: &mut [f32]) {
         let params = self.params();
+        let diverse = self.diversity.width(self.action) > 0;
+        let own: Vec<&[f32]> = batch.rows.iter().map(|row| self.own(row)).collect();
         match batch.network {
             0 => {
+                let more = diverse.then(|| {
+                    let params = self.diversity_params();
+                    diversity_loss::gradients(batch.rows, outputs, self.observation, &params)
+                });
                 let log_std = &batch.parameters[self.log_std.clone()];
                 let old_log_std = self.old_log_std.host();
                 ppo_loss::actor(
                     log_std,
                     old_log_std,
-                    batch.rows,
+                    &own,
                     outputs,
                     extras,
                     self.values,
                     &params,
                 );
+                let more = more.unwrap_or_default();
+                let pairs = outputs.iter_mut().zip(more);
+                pairs.for_each(|(gradient, more)| *gradient += more);
             }
-            _ => ppo_loss::critic(batch.rows, outputs, extras, self.values, &params),
+            _ => ppo_loss::critic(&own, outputs, extras, self.values, &params),
         }
     }
 
@@ -114,5 +163,21 @@ impl Objective for PpoLoss<'_> {
             batch.extras,
             &params,
         );
+        if self.diversity.width(self.action) > 0 {
+            let params = diversity_loss::Params {
+                rows: params.rows,
+                start: params.start,
+                width: params.width,
+                ..self.diversity_params()
+            };
+            diversity_loss::launch(
+                gpu,
+                batch.dims,
+                batch.samples,
+                batch.outputs,
+                batch.output_grads,
+                &params,
+            );
+        }
     }
 }

@@ -9,6 +9,7 @@ pub mod loss;
 
 use crate::nn::network::NetworkConfig;
 pub use learner::PpoLearner;
+pub use loss::Diversity;
 use serde::{Deserialize, Serialize};
 
 /// Everything that may be chosen about learning. Rewards and returns are in the task's units.

@@ -20,6 +20,7 @@ pub fn points(rows: &[UpdateMetrics]) -> Vec<Point> {
         episode_length: row.episode_length,
         fall: row.rate("fall"),
         style_reward: row.rate("style_reward"),
+        task_weight: row.rate("task_weight"),
         recorded_accuracy: row.rate("recorded_accuracy"),
         agent_accuracy: row.rate("agent_accuracy"),
     });

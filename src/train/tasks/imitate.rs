@@ -20,6 +20,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     name: "imitate",
     about: "Move a simulated body like recordings",
     preset,
+    steering: None,
     spec: check,
     takes_motions: true,
     load: |config| load::<Imitate>(config, scenes::humanoid()),
@@ -31,6 +32,7 @@ fn preset(preset: Preset) -> TaskPreset {
         settings: table(&EpisodeRules::default()),
         ppo: styled(preset),
         amp: Some(discriminator(preset)),
+        ase: None,
         steps: 2_500_000,
     }
 }
@@ -42,12 +44,13 @@ fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
 }
 
 /// What all tasks measure of motion.
-pub fn fidelity_measures(found: &FidelityReport) -> [(&'static str, f64); 4] {
+pub fn fidelity_measures(found: &FidelityReport) -> [(&'static str, f64); 5] {
     [
         ("episode_length_mean_s", found.mean_episode_s),
         ("speed_ratio", found.speed_ratio),
         ("dtw_m", found.dtw_m),
         ("coverage", found.coverage),
+        ("power_w", found.power_w),
     ]
 }
 

@@ -7,6 +7,7 @@ pub mod obstacles;
 pub mod plane;
 mod presets;
 pub mod punch;
+pub mod skills;
 pub mod stand;
 pub mod track;
 
@@ -15,7 +16,7 @@ use super::run_dir::RunDir;
 use super::task::TaskEntry;
 
 /// Every task there is.
-pub static REGISTRY: [TaskEntry; 7] = [
+pub static REGISTRY: [TaskEntry; 8] = [
     plane::ENTRY,
     obstacles::ENTRY,
     stand::ENTRY,
@@ -23,6 +24,7 @@ pub static REGISTRY: [TaskEntry; 7] = [
     track::ENTRY,
     punch::PUNCH,
     punch::JOYSTICK,
+    skills::ENTRY,
 ];
 
 /// A task by name.
@@ -43,5 +45,5 @@ pub fn find(name: &str) -> Result<&'static TaskEntry, ConfigError> {
 /// See [`ConfigError`].
 pub fn config_of(run: &RunDir) -> Result<Config, ConfigError> {
     let path = run.config_path();
-    find(&Config::task_of(&path)?)?.config_from(&path, Preset::default())
+    find(&Config::task_of(&path)?)?.config_from(&path, Preset::default(), false)
 }

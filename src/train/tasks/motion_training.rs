@@ -10,9 +10,15 @@ use crate::nn::Policy;
 use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
 use crate::rl::Algorithm;
+use crate::rl::amp::SkillRewards;
+use crate::rl::ase::{
+    FrozenLowLevel, HighLevelDriver, HighLevelEnv, LatentDraw, LatentDriver, LatentEnv,
+};
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
+use crate::train::fingerprint::Fingerprint;
+use crate::train::low_level;
 use crate::train::task::{Loaded, Task, ppo_learner};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
@@ -47,6 +53,16 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
         self.played(library, seed)
     }
 
+    /// The latents under which agents move, if there are any.
+    fn latents(&self, _library: &MotionLibrary) -> Option<LatentDraw> {
+        None
+    }
+
+    /// What makes them move differently under different latents.
+    fn skill_rewards(&self) -> SkillRewards {
+        SkillRewards::default()
+    }
+
     /// Plays `episodes` episodes, whose starts depend on `seed` alone.
     fn evaluate(
         task: Arc<Self::Played>,
@@ -70,18 +86,25 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
 pub struct MotionTraining<T> {
     task: T,
     library: Arc<MotionLibrary>,
+    /// What its policy steers, if it does not act itself.
+    low_level: Option<Arc<FrozenLowLevel>>,
 }
 
-/// Loads the recordings of a task.
+/// Loads the recordings of a task, and the low level, if one is steered.
 ///
 /// # Errors
-/// A wrong choice; recordings that are missing or damaged, or of nobody that the body could move like.
+/// A wrong choice; a low level that cannot be read; recordings that are missing or damaged, or of nobody that the
+/// body could move like.
 pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
     let task = T::of(config)?;
     let (library, notes) = motions::load(config, &Arc::new(body), T::PERFORMANCE)?;
-    let library = Arc::new(library);
+    let low_level = config.skills.as_deref().map(low_level::load).transpose()?;
     Ok(Loaded {
-        task: Box::new(MotionTraining { task, library }),
+        task: Box::new(MotionTraining {
+            task,
+            library: Arc::new(library),
+            low_level: low_level.map(Arc::new),
+        }),
         notes,
     })
 }
@@ -103,21 +126,37 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         Ok(Box::new(MotionTraining {
             task: T::of(config)?,
             library: self.library.clone(),
+            low_level: self.low_level.clone(),
         }))
     }
 
-    fn fingerprint(&self) -> u32 {
-        motions::fingerprint(&self.library)
+    fn fingerprint(&self) -> Fingerprint {
+        let low_level = self.low_level();
+        Fingerprint {
+            data: motions::fingerprint(&self.library),
+            low_level: low_level.map_or(0, FrozenLowLevel::fingerprint),
+        }
     }
 
     fn describe(&self) -> String {
-        motions::describe(&self.library)
+        let motions = motions::describe(&self.library);
+        match &self.low_level {
+            None => motions,
+            Some(low_level) => format!("{motions}, skills of {} numbers", low_level.latent()),
+        }
     }
 
     fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
         let task = self.task.played(&self.library, seed);
+        let latents = self.task.latents(&self.library);
         EnvBatch::open(device, envs, None, |part| {
-            open(device, task.clone(), part, seed)
+            let first = part.start;
+            let body = open(device, task.clone(), part, seed)?;
+            Ok(match (&self.low_level, &latents) {
+                (Some(low_level), _) => Box::new(HighLevelEnv::new(body, low_level, device)?),
+                (None, Some(draw)) => Box::new(LatentEnv::new(body, draw, device, first, seed)),
+                (None, None) => body,
+            })
         })
     }
 
@@ -127,10 +166,31 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         envs: &EnvBatch,
         device: &Device,
     ) -> Result<Box<dyn Algorithm>> {
-        match &config.amp {
-            Some(amp) => motions::learner(config, amp, &self.library, envs, device),
-            None => ppo_learner(config, envs, device),
+        match (&self.low_level, &config.amp) {
+            (Some(_), _) => motions::steering_learner(config, envs, device),
+            (None, Some(amp)) => {
+                let (skills, latents) =
+                    (self.task.skill_rewards(), self.task.latents(&self.library));
+                let latents = latents.as_ref();
+                motions::learner(config, amp, &skills, latents, &self.library, envs, device)
+            }
+            (None, None) => ppo_learner(config, envs, device),
         }
+    }
+
+    fn driver(&self, policy: &Policy) -> Box<dyn BodyDriver> {
+        match (&self.low_level, self.task.latents(&self.library)) {
+            (Some(low_level), _) => Box::new(HighLevelDriver {
+                policy: policy.clone(),
+                low_level: low_level.clone(),
+            }),
+            (None, Some(draw)) => Box::new(LatentDriver::new(policy, &draw, EPISODES_SEED)),
+            (None, None) => Box::new(policy.clone()),
+        }
+    }
+
+    fn low_level(&self) -> Option<&FrozenLowLevel> {
+        self.low_level.as_deref()
     }
 
     fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {

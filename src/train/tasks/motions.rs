@@ -10,7 +10,11 @@ use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::motion_list::{ClipReport, MotionList, MotionListOptions};
 use crate::rl::Algorithm;
-use crate::rl::amp::{Amp, AmpLearner};
+use crate::rl::amp::{Amp, AmpLearner, SkillRewards};
+use crate::rl::ase::LatentDraw;
+use crate::rl::gae::RewardSource;
+use crate::rl::ppo::PpoLearner;
+use crate::rl::task_weight::TaskWeight;
 use crate::train::config::Config;
 use crate::train::data::SYNTHETIC_SEED;
 use crate::train::evaluation::EvalOptions;
@@ -95,21 +99,49 @@ fn line(clip: &ClipReport) -> String {
     )
 }
 
-/// PPO with a discriminator of the library's motion.
+/// PPO with a discriminator of the library's motion, which is shown the `latents` of clips where it is to.
 ///
 /// # Errors
 /// A network does not fit the observations, or the device.
 pub fn learner(
     config: &Config,
     amp: &Amp,
+    skills: &SkillRewards,
+    latents: Option<&LatentDraw>,
     library: &MotionLibrary,
     envs: &EnvBatch,
     device: &Device,
 ) -> Result<Box<dyn Algorithm>> {
     let (ppo, seed) = (&config.ppo, config.seed);
-    let demonstrations = Arc::new(demonstrations(library));
-    let learner = AmpLearner::new(ppo, amp, &demonstrations, envs, device, seed)?;
-    Ok(Box::new(learner))
+    let latents = latents.filter(|_| skills.latents.shown() > 0);
+    let clips: Vec<&[f32]> = latents.iter().flat_map(|draw| draw.clips()).collect();
+    let demonstrations = Arc::new(demonstrations(library, &clips));
+    let learner = AmpLearner::new(ppo, amp, skills, &demonstrations, envs, device, seed)?;
+    let weight = TaskWeight::new(&config.task_weight, amp.lambda());
+    Ok(Box::new(learner.with_task_weight(weight)))
+}
+
+/// Weights of the task's reward and of the style's, which the low level's discriminator gives, where a low level is
+/// steered (ASE's).
+const STEERING_REWARDS: [(RewardSource, f32); 2] =
+    [(RewardSource::Task, 0.9), (RewardSource::Style, 0.1)];
+
+/// PPO of a policy that steers a low level, whose own style a rule for the weight of the task keeps to.
+///
+/// # Errors
+/// A network does not fit the observations, or the device.
+pub fn steering_learner(
+    config: &Config,
+    envs: &EnvBatch,
+    device: &Device,
+) -> Result<Box<dyn Algorithm>> {
+    let (ppo, seed) = (&config.ppo, config.seed);
+    let learner = PpoLearner::with_rewards(ppo, envs, device, seed, &STEERING_REWARDS)?;
+    let [task, style] = STEERING_REWARDS.map(|(_, weight)| f64::from(weight));
+    // The low level's own reward was measured under the noise of its actions, and would be too easy to reach: the
+    // reference is found anew, from first decisions that are as good as random.
+    let weight = TaskWeight::new(&config.task_weight, task / style);
+    Ok(Box::new(learner.with_task_weight(weight)))
 }
 
 /// Refuses what `footwork eval` has for motion matching alone.

@@ -10,6 +10,7 @@ use crate::rl::ppo::Ppo;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, table, within};
 use crate::train::eval_report::{levels, levels_json};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
+use crate::train::fingerprint::Fingerprint;
 use crate::train::locomotion::{Locomotion, rollout_spec, split, with_weights};
 use crate::train::task::{Ablation, Loaded, Measure, Task, TaskEntry, Variant};
 #[cfg(feature = "report")]
@@ -21,6 +22,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     name: "obstacles",
     about: "Reach a target among 100 moving obstacles",
     preset,
+    steering: None,
     spec,
     takes_motions: false,
     load,
@@ -36,6 +38,7 @@ fn preset(preset: Preset) -> TaskPreset {
         settings: with_weights(&task, Weights::PAPER),
         ppo,
         amp: None,
+        ase: None,
         steps: 6_000_000,
     }
 }
@@ -142,8 +145,8 @@ impl Task for ObstaclesTask {
         }))
     }
 
-    fn fingerprint(&self) -> u32 {
-        self.locomotion.matcher.database.fingerprint
+    fn fingerprint(&self) -> Fingerprint {
+        self.locomotion.matcher.database.fingerprint.into()
     }
 
     fn describe(&self) -> String {

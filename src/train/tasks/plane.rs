@@ -9,6 +9,7 @@ use crate::nn::Policy;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, within};
 use crate::train::evaluate::hardest;
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
+use crate::train::fingerprint::Fingerprint;
 use crate::train::locomotion::{Locomotion, rollout_spec, split, with_weights};
 use crate::train::task::{Loaded, Task, TaskEntry, Unsupported};
 #[cfg(feature = "report")]
@@ -20,6 +21,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     name: "plane",
     about: "Reach a target on an empty plane",
     preset,
+    steering: None,
     spec,
     takes_motions: false,
     load,
@@ -37,6 +39,7 @@ fn preset(preset: Preset) -> TaskPreset {
             Preset::Paper => paper(),
         },
         amp: None,
+        ase: None,
         steps: 1_000_000,
     }
 }
@@ -80,8 +83,8 @@ impl Task for PlaneTask {
         Ok(Box::new(PlaneTask { plane, locomotion }))
     }
 
-    fn fingerprint(&self) -> u32 {
-        self.locomotion.matcher.database.fingerprint
+    fn fingerprint(&self) -> Fingerprint {
+        self.locomotion.matcher.database.fingerprint.into()
     }
 
     fn describe(&self) -> String {

@@ -4,7 +4,7 @@
 use super::imitate::fidelity_measures;
 use super::motion_training::{MotionTask, load};
 use super::motions::Performance;
-use super::presets::{discriminator, styled};
+use super::presets::{discriminator, steering, styled};
 use crate::env::EnvSpec;
 use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::punch::evaluate::{PunchReport, evaluate};
@@ -17,6 +17,7 @@ use crate::rl::amp::Amp;
 use crate::rl::ppo::Ppo;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
 use crate::train::evaluation::Evaluation;
+use crate::train::low_level;
 use crate::train::task::{Ablation, Measure, TaskEntry, Variant};
 use std::sync::Arc;
 
@@ -25,6 +26,7 @@ pub const PUNCH: TaskEntry = TaskEntry {
     name: "punch",
     about: "Let a simulated body run up to a box and topple it",
     preset: |chosen| preset(chosen, Punch::default()),
+    steering: Some(|chosen| steering_preset(chosen, Punch::default())),
     spec: check,
     takes_motions: true,
     load: |config| load::<TargetTask>(config, scenes::humanoid()),
@@ -35,21 +37,23 @@ pub const PUNCH: TaskEntry = TaskEntry {
 pub const JOYSTICK: TaskEntry = TaskEntry {
     name: "joystick",
     about: "Let it walk to the box while it faces any way that is wanted",
-    preset: |chosen| {
-        let punch = Punch {
-            far: FarReward::Velocity,
-            // It is the way that is to be learned: no reward for an early hit makes up for a wrong one.
-            near_share: 0.2,
-            far_weight: 1.0,
-            // Walking as one faces comes first; other facings are learned from there.
-            facing_power: 3.0,
-            ..Punch::default()
-        };
-        preset(chosen, punch)
-    },
+    preset: |chosen| preset(chosen, joystick_choices()),
+    steering: Some(|chosen| steering_preset(chosen, joystick_choices())),
     ablations: &[],
     ..PUNCH
 };
+
+fn joystick_choices() -> Punch {
+    Punch {
+        far: FarReward::Velocity,
+        // It is the way that is to be learned: no reward for an early hit makes up for a wrong one.
+        near_share: 0.2,
+        far_weight: 1.0,
+        // Walking as one faces comes first; other facings are learned from there.
+        facing_power: 3.0,
+        ..Punch::default()
+    }
+}
 
 /// The paper's figure 3, and the forms of the reward for a far target.
 const ABLATION: Ablation = Ablation {
@@ -101,7 +105,18 @@ fn preset(chosen: Preset, punch: Punch) -> TaskPreset {
             task_weight: 0.5,
             ..discriminator(chosen)
         }),
+        ase: None,
         steps: 10_000_000,
+    }
+}
+
+fn steering_preset(chosen: Preset, punch: Punch) -> TaskPreset {
+    TaskPreset {
+        settings: table(&punch),
+        ppo: steering(chosen),
+        amp: None,
+        ase: None,
+        steps: 2_000_000,
     }
 }
 
@@ -109,7 +124,8 @@ fn check(config: &Config) -> Result<EnvSpec, ConfigError> {
     let task = TargetTask::of(config)?;
     task.punch.check().map_err(ConfigError::Settings)?;
     let added = punch_observe::dim(task.joystick);
-    Ok(spec(&scenes::humanoid_and_box(), added, config.ppo.envs))
+    let body = spec(&scenes::humanoid_and_box(), added, config.ppo.envs);
+    low_level::steered(config, body)
 }
 
 #[derive(Clone)]

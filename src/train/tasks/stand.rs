@@ -15,6 +15,7 @@ use crate::rl::ppo::Ppo;
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
+use crate::train::fingerprint::Fingerprint;
 use crate::train::task::{Loaded, Task, TaskEntry};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
@@ -26,6 +27,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     name: "stand",
     about: "Keep a simulated body upright while it is pushed",
     preset,
+    steering: None,
     spec: check,
     takes_motions: false,
     load,
@@ -57,6 +59,7 @@ fn preset(_: Preset) -> TaskPreset {
             ..fast()
         },
         amp: None,
+        ase: None,
         steps: 2_300_000,
     }
 }
@@ -103,8 +106,8 @@ impl Task for StandTraining {
         Ok(Box::new(StandTraining::new(config)?))
     }
 
-    fn fingerprint(&self) -> u32 {
-        0
+    fn fingerprint(&self) -> Fingerprint {
+        0.into()
     }
 
     fn describe(&self) -> String {

@@ -21,6 +21,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     name: "track",
     about: "Let a simulated body follow recordings moment by moment",
     preset,
+    steering: None,
     spec: check,
     takes_motions: true,
     load: |config| load::<Tracking>(config, scenes::humanoid()),
@@ -32,6 +33,7 @@ fn preset(preset: Preset) -> TaskPreset {
         settings: table(&Tracking::default()),
         ppo: styled(preset),
         amp: None,
+        ase: None,
         steps: 2_500_000,
     }
 }

@@ -1,4 +1,6 @@
 mod boxing;
+mod latents;
 mod mirrored;
+mod skills;
 mod stand;
 mod style;

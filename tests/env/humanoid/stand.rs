@@ -75,6 +75,7 @@ impl Rollout {
         let out = Transition {
             step: self.steps,
             reward: &mut self.reward,
+            style_reward: &mut Array::zeroed(&self.device, 1),
             termination: &mut self.termination,
             group: &mut self.group,
             final_observation: &mut self.final_observation,

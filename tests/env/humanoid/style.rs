@@ -15,7 +15,7 @@ use footwork::gpu::{Array, Device};
 use footwork::motion::synthetic::{perform_boxing, perform_walk};
 use footwork::physics::motion_library::MotionLibrary;
 use footwork::physics::scenes;
-use footwork::rl::amp::{Amp, Discriminator, DiscriminatorLoss, FrozenDiscriminator};
+use footwork::rl::amp::{Amp, Discriminator, DiscriminatorLoss, FrozenDiscriminator, LatentUse};
 use footwork::rl::rollout::Rollout;
 use std::sync::{Arc, LazyLock};
 
@@ -57,14 +57,20 @@ fn tasks(episode_s: f32) -> [Arc<dyn HumanoidTask>; 5] {
     ]
 }
 
+/// The task `imitate`, with episodes of so many seconds.
+pub fn imitate(episode_s: f32) -> Arc<dyn HumanoidTask> {
+    let [imitate, ..] = tasks(episode_s);
+    imitate
+}
+
 /// What some steps came to.
 #[derive(PartialEq, Debug)]
 pub struct Played {
     pub observations: Vec<f32>,
     pub rewards: Vec<f32>,
     pub ends: Vec<u32>,
-    groups: Vec<u32>,
-    finals: Vec<f32>,
+    pub groups: Vec<u32>,
+    pub finals: Vec<f32>,
 }
 
 /// Plays steps of actions near the pose that the environments rest in.
@@ -90,6 +96,7 @@ pub fn play(device: &Device, envs: &mut dyn VecEnv, steps: usize, seed: u32) -> 
         let out = Transition {
             step,
             reward: &mut reward,
+            style_reward: &mut Array::zeroed(device, 1),
             termination: &mut ends,
             group: &mut groups,
             final_observation: &mut finals,
@@ -155,7 +162,7 @@ fn a_reset_is_a_recorded_moment() {
     let style = envs.spec().style;
     let mut seen = Array::zeroed(&Device::Cpu, 64 * style);
     envs.observe(&mut seen, 0);
-    let recorded = demonstrations(&LIBRARY);
+    let recorded = demonstrations(&LIBRARY, &[]);
     assert_eq!(recorded.dim, 2 * style);
     for row in seen.host().chunks_exact(style) {
         let distance = |window: &[f32]| {
@@ -180,7 +187,7 @@ fn a_reset_is_a_recorded_moment() {
 
 #[test]
 fn demonstrations_are_drawn_by_weight() {
-    let recorded = demonstrations(&LIBRARY);
+    let recorded = demonstrations(&LIBRARY, &[]);
     let boundary = (6.0 * 30.0) as u32 - 1;
     let share = LIBRARY.share(0);
     let mut draw = Draw::new(4);
@@ -209,7 +216,7 @@ fn a_frozen_discriminator_rewards_as_it_did() {
     rollout.observe(envs.as_mut(), steps);
     let running = |&end: &u32| end == termination::RUNNING;
     assert!(rollout.termination.host().iter().all(running));
-    let recorded = Arc::new(demonstrations(&LIBRARY));
+    let recorded = Arc::new(demonstrations(&LIBRARY, &[]));
     let mut rollouts = [rollout];
     for loss in [DiscriminatorLoss::Bce, DiscriminatorLoss::Hinge] {
         let amp = Amp {
@@ -220,25 +227,30 @@ fn a_frozen_discriminator_rewards_as_it_did() {
             ..Amp::default()
         };
         let samples = rollouts[0].samples();
-        let mut learning = Discriminator::new(&amp, &recorded, &Device::Cpu, samples, 1).unwrap();
+        let learning =
+            Discriminator::new(&amp, LatentUse::None, &recorded, &Device::Cpu, samples, 1);
+        let mut learning = learning.unwrap();
         learning.reward(&mut rollouts);
         learning.learn();
         learning.reward(&mut rollouts);
         let (mut own, mut section) = (Section::default(), Section::default());
         learning.save(&mut own).unwrap();
         section.put_section("discriminator", own);
-        let frozen = FrozenDiscriminator::load(&amp, &mut section.clone(), spec.style).unwrap();
+        let load = |section: &mut Section, style: usize| {
+            FrozenDiscriminator::load(&amp, LatentUse::None, section, style)
+        };
+        let frozen = load(&mut section.clone(), spec.style).unwrap();
         let [rollout] = &rollouts;
         let moments = rollout.observation.host().chunks_exact(spec.style);
         let after = moments.clone().skip(spec.envs);
         let given = rollout.style_reward.host();
         for ((before, after), given) in moments.zip(after).zip(given) {
-            let reward = frozen.reward([before, after]);
+            let reward = frozen.reward([before, after], &[]);
             assert!((reward - given).abs() < 1e-4, "{reward} {given}");
             assert!((0.0..=1.0).contains(&frozen.share(reward)));
         }
-        assert!(FrozenDiscriminator::load(&amp, &mut section, spec.style + 1).is_err());
-        assert!(FrozenDiscriminator::load(&amp, &mut Section::default(), spec.style).is_err());
+        assert!(load(&mut section, spec.style + 1).is_err());
+        assert!(load(&mut Section::default(), spec.style).is_err());
     }
 }
 
@@ -260,6 +272,7 @@ fn a_moved_target_stands_where_it_was_put() {
     let out = Transition {
         step: 0,
         reward: &mut reward,
+        style_reward: &mut Array::zeroed(&Device::Cpu, 2),
         termination: &mut ends,
         group: &mut Array::zeroed(&Device::Cpu, 2),
         final_observation: &mut finals,

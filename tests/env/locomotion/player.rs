@@ -117,6 +117,7 @@ impl Player {
             let transition = Transition {
                 step: self.step,
                 reward: &mut rollout.reward,
+                style_reward: &mut rollout.style_reward,
                 termination: &mut rollout.termination,
                 group: &mut rollout.group,
                 final_observation: &mut rollout.final_observation,

@@ -99,12 +99,15 @@ fn windows_do_not_depend_on_how_samples_are_laid_out() {
 #[test]
 fn style_rewards_agree() {
     for (samples, heads, hinge) in [(1, 1, 0), (65, 1, 0), (1000, 3, 0), (1000, 32, 1)] {
+        // An encoder's outputs may follow.
+        let outputs = heads + samples % 5;
         let params = style_reward::Params {
             samples,
+            outputs,
             heads,
             hinge,
         };
-        let mut output = Draw::new(samples).normals((samples * heads) as usize);
+        let mut output = Draw::new(samples).normals((samples * outputs) as usize);
         output[0] = 50.0;
         let forms = forms!(
             style_reward, STYLE_REWARD, samples as usize, params; output, out samples as usize
@@ -120,6 +123,7 @@ fn style_rewards_of_simple_cases() {
     let reward = |out: f32, hinge: u32| {
         let params = style_reward::Params {
             samples: 1,
+            outputs: 1,
             heads: 1,
             hinge,
         };
@@ -155,15 +159,14 @@ mod by_rows {
         extras: &mut [f32],
         params: &Params,
     ) {
-        let heads = dims[2] as usize;
-        let rows = params.rows as usize;
+        let (heads, rows) = (dims[2] as usize, params.rows as usize);
         let output_grads = &mut output_grads[..rows * heads];
         output_grads.copy_from_slice(outputs);
         let rows = output_grads.chunks_exact_mut(heads);
         for (row, (grads, extras)) in rows.zip(extras.chunks_exact_mut(SUMS)).enumerate() {
             let sample = &samples[(params.start as usize + row) * WIDTH..][..WIDTH];
             extras.fill(0.0);
-            discriminator_loss::rows(&[sample], grads, extras, params);
+            discriminator_loss::rows(&[sample], DIM, grads, extras, params);
         }
     }
 }
@@ -176,6 +179,7 @@ fn discriminator_losses_agree() {
             start: START as u32,
             width: WIDTH as u32,
             hinge,
+            heads: heads as u32,
             inv_count: 1.0 / rows as f32,
         };
         let mut draw = Draw::new(3);

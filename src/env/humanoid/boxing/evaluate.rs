@@ -47,8 +47,13 @@ pub fn evaluate(
     seed: u32,
 ) -> BoxingReport {
     let mut envs = CpuHumanoidEnv::unstaggered(task, 0..bouts, seed);
-    let mut corners = Corners::new(drivers, envs.spec().observation.dim());
-    let found = play_episodes_by(&mut envs, |observation| corners.act(observation), |_, _| ());
+    let corners = Corners::new(drivers, envs.spec().observation.dim());
+    let found = play_episodes_by(
+        &mut envs,
+        |observation, corners: &mut Corners| corners.act(observation),
+        corners,
+        |_, _, _| (),
+    );
     report(&found, &envs)
 }
 

@@ -9,7 +9,10 @@ use super::batch::SimulatedWorld;
 use super::task::play::Episodes;
 use super::task::{CpuHumanoidEnv, DT};
 use crate::kernels::termination::FAILED;
+use crate::physics::drive::{Effort, efforts};
+use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
+use crate::physics::simulator::STEP_RATE;
 pub use pose_track::PoseTrack;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -37,6 +40,10 @@ pub struct FidelityReport {
     pub dtw_m: f64,
     /// Fraction of the clips that are nearest to at least 1 % of the stretches.
     pub coverage: f64,
+    /// Entropy of how often each clip is nearest, against that of all being as often so.
+    pub coverage_entropy: f64,
+    /// Mean mechanical power of the drives, work done on them counted as work, W.
+    pub power_w: f64,
 }
 
 /// Watches the first episode of each environment.
@@ -48,6 +55,9 @@ pub struct FidelityProbe<'a> {
     before: Vec<[f32; 2]>,
     distance_m: f64,
     frames: usize,
+    /// Sum of the drives' power over the compared frames, W, and their number.
+    power_w: f64,
+    compared: usize,
 }
 
 impl<'a> FidelityProbe<'a> {
@@ -62,6 +72,8 @@ impl<'a> FidelityProbe<'a> {
             before: worlds.iter().map(root_of).collect(),
             distance_m: 0.0,
             frames: 0,
+            power_w: 0.0,
+            compared: 0,
         }
     }
 
@@ -75,6 +87,8 @@ impl<'a> FidelityProbe<'a> {
                 self.frames += 1;
                 if let Some(track) = self.tracks.get_mut(env) {
                     track.push(envs.task().model(), &world.state.q);
+                    self.power_w += power(envs.task().model(), world);
+                    self.compared += 1;
                 }
             }
             self.before[env] = now;
@@ -85,7 +99,7 @@ impl<'a> FidelityProbe<'a> {
     pub fn report(&self, found: &Episodes) -> FidelityReport {
         let stretches = self.tracks.iter().flat_map(|track| track.parts(STRETCH));
         let nearest = self.nearest(&stretches.collect::<Vec<_>>());
-        let mut counts = vec![0; self.references.len()];
+        let mut counts = vec![0u32; self.references.len()];
         nearest.iter().for_each(|(clip, _)| counts[*clip] += 1);
         let enough = (COVERED * nearest.len() as f64).max(1.0);
         let covered = counts.iter().filter(|&&count| f64::from(count) >= enough);
@@ -99,7 +113,19 @@ impl<'a> FidelityProbe<'a> {
             speed_ratio: speed / mean_speed(self.library).max(1e-6),
             dtw_m: distance / nearest.len().max(1) as f64,
             coverage: covered.count() as f64 / counts.len().max(1) as f64,
+            power_w: self.power_w / self.compared.max(1) as f64,
+            coverage_entropy: entropy(&counts) / (counts.len().max(2) as f64).ln(),
         }
+    }
+
+    /// The nearest clip of every stretch of a second, of each environment whose poses are compared.
+    pub fn nearest_clips(&self) -> Vec<Vec<usize>> {
+        let stretches = self.tracks.iter().map(|track| {
+            let stretches: Vec<PoseTrack> = track.parts(STRETCH).collect();
+            let nearest = self.nearest(&stretches);
+            nearest.into_iter().map(|(clip, _)| clip).collect()
+        });
+        stretches.collect()
     }
 
     /// Fraction of poses whose nearest clip is of a kind; `None` without poses, or clips of that kind.
@@ -124,6 +150,25 @@ impl<'a> FidelityProbe<'a> {
         };
         parts.par_iter().map(nearest).collect()
     }
+}
+
+/// The entropy of frequencies, nats.
+fn entropy(counts: &[u32]) -> f64 {
+    let total = f64::from(counts.iter().sum::<u32>().max(1));
+    let shares = counts.iter().map(|&count| f64::from(count) / total);
+    let terms = shares.filter(|&share| share > 0.0);
+    -terms.map(|share| share * share.ln()).sum::<f64>()
+}
+
+/// The power of a world's drives at this moment, each counted as positive, W.
+fn power(model: &Model, world: &SimulatedWorld) -> f64 {
+    let (q, v) = (&world.state.q, &world.state.v);
+    let mut drives = vec![Effort::default(); model.nv()];
+    efforts(model, q, v, &world.targets, 1.0 / STEP_RATE, &mut drives);
+    let limits = model.dofs.iter().map(|dof| dof.drive.map_or(0.0, |drive| drive.limit));
+    let powers = drives.iter().zip(limits).zip(v);
+    let powers = powers.map(|((drive, limit), speed)| drive.force.clamp(-limit, limit) * speed);
+    powers.map(|power| f64::from(power.abs())).sum()
 }
 
 fn root_of(world: &SimulatedWorld) -> [f32; 2] {

@@ -2,7 +2,7 @@
 
 use super::PunchTask;
 use super::steering::{SteeringProbe, SteeringReport};
-use crate::env::humanoid::driver::BodyDriver;
+use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::env::humanoid::fidelity::{FidelityProbe, FidelityReport, PoseTrack};
 use crate::env::humanoid::task::play::{Episodes, play_episodes};
 use crate::env::humanoid::task::{CpuHumanoidEnv, DT};
@@ -51,7 +51,7 @@ pub fn evaluate(
     let mut probe = FidelityProbe::new(library, &envs);
     let mut steering = SteeringProbe::new(&task, episodes);
     let mut near = PoseTrack::default();
-    let found = play_episodes(&mut envs, driver, |envs, running| {
+    let found = play_episodes(&mut envs, driver, DriverState::default(), |envs, running, _| {
         probe.observe(envs, running);
         steering.observe(envs, running);
         let worlds = envs.batch.worlds.iter().zip(&envs.task_states);

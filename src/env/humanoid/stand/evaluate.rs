@@ -1,7 +1,7 @@
 //! How well a policy stands: a number of episodes, played to their end on the CPU.
 
 use super::{Stand, StandTask};
-use crate::env::humanoid::driver::BodyDriver;
+use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::env::humanoid::task::play::play_episodes;
 use crate::env::humanoid::task::{CpuHumanoidEnv, DT};
 use crate::kernels::termination;
@@ -25,7 +25,7 @@ pub struct StandReport {
 pub fn evaluate(stand: &Stand, driver: &dyn BodyDriver, episodes: usize, seed: u32) -> StandReport {
     let task = Arc::new(StandTask::new(stand, seed));
     let mut envs = CpuHumanoidEnv::unstaggered(task, 0..episodes, seed);
-    let found = play_episodes(&mut envs, driver, |_, _| ());
+    let found = play_episodes(&mut envs, driver, DriverState::default(), |_, _, _| ());
     // Of all statistics these are the third and the last.
     let (steps, upright) = (found.mean(2), found.mean(5));
     StandReport {

@@ -42,12 +42,14 @@ const PUSH_JITTER: u32 = 15;
 /// let mut observation = Array::zeroed(&Device::Cpu, spec.rows() * spec.observation.dim());
 /// let mut final_observation = observation.clone();
 /// let mut reward = Array::zeroed(&Device::Cpu, spec.rows());
+/// let mut style_reward = reward.clone();
 /// let mut termination = Array::zeroed(&Device::Cpu, spec.rows());
 /// let mut group = termination.clone();
 /// for _ in 0..5 {
 ///     let out = Transition {
 ///         step: 0,
 ///         reward: &mut reward,
+///         style_reward: &mut style_reward,
 ///         termination: &mut termination,
 ///         group: &mut group,
 ///         final_observation: &mut final_observation,

@@ -8,31 +8,30 @@ use crate::gpu::Array;
 use crate::kernels::termination;
 use crate::physics::motion_clip::MotionClip;
 
-/// Steps environments one episode long. `after` is shown every step, with how it ended for each agent, and says
-/// whether to go on.
+/// Steps environments one episode long, under a driver in some `state`. `after` is shown every step, with how it
+/// ended for each agent and what the driver remembers, and says whether to go on.
 pub fn play(
     envs: &mut CpuHumanoidEnv,
     driver: &dyn BodyDriver,
-    after: impl FnMut(&CpuHumanoidEnv, &[u32]) -> bool,
+    state: DriverState,
+    after: impl FnMut(&CpuHumanoidEnv, &[u32], &mut DriverState) -> bool,
 ) {
-    let mut state = DriverState::default();
-    play_by(
-        envs,
-        |observation| driver.act(observation, &mut state),
-        after,
-    );
+    let act = |observation: &[f32], state: &mut DriverState| driver.act(observation, state);
+    play_by(envs, act, state, after);
 }
 
-/// [`play`] by whoever decides on actions `[rows][action]` for observations `[rows][observation]`.
-fn play_by(
+/// [`play`] by whoever decides on actions `[rows][action]` for observations `[rows][observation]`, and remembers
+/// `state`.
+fn play_by<S>(
     envs: &mut CpuHumanoidEnv,
-    mut act: impl FnMut(&[f32]) -> Vec<f32>,
-    mut after: impl FnMut(&CpuHumanoidEnv, &[u32]) -> bool,
+    mut act: impl FnMut(&[f32], &mut S) -> Vec<f32>,
+    mut state: S,
+    mut after: impl FnMut(&CpuHumanoidEnv, &[u32], &mut S) -> bool,
 ) {
     let mut step = DrivenStep::new(envs);
     for _ in 0..envs.task().rules().steps() {
-        step.play_by(envs, &mut act);
-        if !after(envs, step.ends.host()) {
+        step.play_by(envs, |observation| act(observation, &mut state));
+        if !after(envs, step.ends.host(), &mut state) {
             return;
         }
     }
@@ -46,6 +45,7 @@ pub struct DrivenStep {
     pub reward: Array,
     /// How it ended, `[rows]`.
     pub ends: Array<u32>,
+    style_reward: Array,
     group: Array<u32>,
     last: Array,
 }
@@ -58,6 +58,7 @@ impl DrivenStep {
             observation: Array::Host(vec![0.0; count * dim]),
             reward: Array::Host(vec![0.0; count]),
             ends: Array::Host(vec![termination::RUNNING; count]),
+            style_reward: Array::Host(vec![0.0; count]),
             group: Array::Host(vec![0; count]),
             last: Array::Host(vec![0.0; count * dim]),
         }
@@ -79,6 +80,7 @@ impl DrivenStep {
         let out = Transition {
             step: 0,
             reward: &mut self.reward,
+            style_reward: &mut self.style_reward,
             termination: &mut self.ends,
             group: &mut self.group,
             final_observation: &mut self.last,
@@ -95,26 +97,25 @@ pub struct Episodes {
     pub sums: Vec<Vec<f32>>,
 }
 
-/// Plays one episode of each environment to its end. `after` is shown every step, with the agents still in
-/// their first episode.
+/// Plays one episode of each environment to its end, under a driver in some `state`. `after` is shown every step,
+/// with the agents still in their first episode and what the driver remembers.
 pub fn play_episodes(
     envs: &mut CpuHumanoidEnv,
     driver: &dyn BodyDriver,
-    after: impl FnMut(&CpuHumanoidEnv, &[bool]),
+    state: DriverState,
+    after: impl FnMut(&CpuHumanoidEnv, &[bool], &mut DriverState),
 ) -> Episodes {
-    let mut state = DriverState::default();
-    play_episodes_by(
-        envs,
-        |observation| driver.act(observation, &mut state),
-        after,
-    )
+    let act = |observation: &[f32], state: &mut DriverState| driver.act(observation, state);
+    play_episodes_by(envs, act, state, after)
 }
 
-/// [`play_episodes`] by whoever decides on actions `[rows][action]` for observations `[rows][observation]`.
-pub fn play_episodes_by(
+/// [`play_episodes`] by whoever decides on actions `[rows][action]` for observations `[rows][observation]`, and
+/// remembers `state`.
+pub fn play_episodes_by<S>(
     envs: &mut CpuHumanoidEnv,
-    act: impl FnMut(&[f32]) -> Vec<f32>,
-    mut after: impl FnMut(&CpuHumanoidEnv, &[bool]),
+    act: impl FnMut(&[f32], &mut S) -> Vec<f32>,
+    state: S,
+    mut after: impl FnMut(&CpuHumanoidEnv, &[bool], &mut S),
 ) -> Episodes {
     let count = envs.spec().rows();
     let mut found = Episodes {
@@ -122,7 +123,7 @@ pub fn play_episodes_by(
         sums: vec![Vec::new(); count],
     };
     let mut running = vec![true; count];
-    play_by(envs, act, |envs, ends| {
+    play_by(envs, act, state, |envs, ends, state| {
         for (row, &end) in ends.iter().enumerate() {
             if running[row] && end != termination::RUNNING {
                 let stats = envs.stat_names().len();
@@ -132,7 +133,7 @@ pub fn play_episodes_by(
                 found.sums[row] = episode[episode.len() - stats..].to_vec();
             }
         }
-        after(envs, &running);
+        after(envs, &running, state);
         running.contains(&true)
     });
     found
@@ -155,7 +156,7 @@ impl Episodes {
 /// The motion of one episode of the first environment, up to its end.
 pub fn record(envs: &mut CpuHumanoidEnv, driver: &dyn BodyDriver, name: &str) -> MotionClip {
     let mut q = envs.batch.worlds[0].state.q.clone();
-    play(envs, driver, |envs, ends| {
+    play(envs, driver, DriverState::default(), |envs, ends, _| {
         let running = ends[0] == termination::RUNNING;
         if running {
             q.extend(&envs.batch.worlds[0].state.q);

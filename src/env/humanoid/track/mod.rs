@@ -5,7 +5,7 @@
 mod references;
 
 use super::batch::SimulatedWorld;
-use super::driver::BodyDriver;
+use super::driver::{BodyDriver, DriverState};
 use super::fidelity::{FidelityProbe, FidelityReport};
 use super::recorded::mean_action;
 use super::task::play::play_episodes;
@@ -308,7 +308,7 @@ pub fn evaluate(
     let library = task.library.clone();
     let mut envs = CpuHumanoidEnv::unstaggered(task, 0..episodes, seed);
     let mut probe = FidelityProbe::new(&library, &envs);
-    let found = play_episodes(&mut envs, driver, |envs, running| {
+    let found = play_episodes(&mut envs, driver, DriverState::default(), |envs, running, _| {
         probe.observe(envs, running);
     });
     // In the order of the statistics.

@@ -1,12 +1,13 @@
-//! Variants of a task side by side, trained from several seeds each and evaluated on the same episodes.
+//! Ways to learn a task side by side, trained from several seeds each and evaluated on the same episodes.
 
 use super::checkpoint::Checkpoint;
 use super::config::Config;
 use super::evaluation::Evaluation;
+use super::fingerprint::Fingerprint;
 use super::metrics::{self, UpdateMetrics};
 use super::observer::Observer;
 use super::run_dir::RunDir;
-use super::task::{Ablation, Task, TaskEntry, Variant};
+use super::task::{Measure, Task, TaskEntry};
 use super::tasks::config_of;
 use super::trainer::{EPISODES, Training, train};
 use crate::container::write_whole;
@@ -17,27 +18,39 @@ use anyhow::{Result, bail};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Runs of an ablation: the task, what to compare, and the choices that all variants share.
+/// Trainings side by side.
 pub struct Comparison<'a> {
-    /// The task.
+    /// What the files with the figures are called.
+    pub title: &'static str,
+    /// The task that all learn.
     pub entry: &'a TaskEntry,
-    /// Its variants.
-    pub ablation: &'a Ablation,
-    /// The choices that all variants share.
-    pub base: &'a Config,
-    /// The task with its data under those choices.
-    pub task: &'a dyn Task,
-    /// Where the variants are trained.
+    /// Who is compared; the first is what the others are compared with.
+    pub contestants: Vec<Contestant<'a>>,
+    /// What is compared besides the success.
+    pub measures: &'static [Measure],
+    /// Rates of episodes in `metrics.jsonl` whose curves are kept.
+    pub rates: &'static [&'static str],
+    /// Where all are trained.
     pub device: &'a Device,
     /// Folder of all runs.
     pub out: &'a Path,
-    /// What all variants begin with, if not from nothing.
+}
+
+/// One way to learn a task.
+pub struct Contestant<'a> {
+    /// Name of its runs' folders, and in tables.
+    pub name: &'static str,
+    /// Its choices, but for the seed.
+    pub config: Config,
+    /// The task with its data under these choices.
+    pub task: Box<dyn Task>,
+    /// What it begins with, if not from nothing.
     pub start: Option<&'a Checkpoint>,
 }
 
-/// One variant's training from one seed.
+/// One contestant's training from one seed.
 pub struct Outcome {
-    /// Name of the variant.
+    /// Name of the contestant.
     pub variant: &'static str,
     /// Seed of the training.
     pub seed: u32,
@@ -48,9 +61,9 @@ pub struct Outcome {
 }
 
 impl Comparison<'_> {
-    /// Trains all variants from the seeds 1 to `seeds` in folders of `out`, and writes `ablation.png`,
-    /// `ablation.txt`, `evaluation.csv` and `curves.csv` there. What an earlier call has finished is kept,
-    /// what it has begun, or ended after fewer steps, is gone on with. None if it was interrupted.
+    /// Trains all contestants from the seeds 1 to `seeds` in folders of `out`, and writes a picture and a table
+    /// by the comparison's title, `evaluation.csv` and `curves.csv` there. What an earlier call has finished is
+    /// kept, what it has begun, or ended after fewer steps, is gone on with. None if it was interrupted.
     ///
     /// # Errors
     /// See [`train`]; or `out` holds runs of another configuration.
@@ -60,18 +73,17 @@ impl Comparison<'_> {
         interrupted: &AtomicBool,
         observer: &mut (dyn Observer + Send),
     ) -> Result<Option<Vec<Outcome>>> {
-        let variants = self.ablation.variants;
-        for variant in variants {
-            self.entry.check(&self.configure(variant, 1))?;
+        for contestant in &self.contestants {
+            self.entry.check(&contestant.config)?;
         }
         let mut outcomes = Vec::new();
-        // Seed by seed, so that a first picture of all variants is there soon.
+        // Seed by seed, so that a first picture of all is there soon.
         for seed in 1..=seeds {
-            for variant in variants {
-                let path = self.out.join(format!("{}-{seed}", variant.name));
-                let all = variants.len() * seeds as usize;
+            for contestant in &self.contestants {
+                let path = self.out.join(format!("{}-{seed}", contestant.name));
+                let all = self.contestants.len() * seeds as usize;
                 observer.noted(&format!("{} of {all}", path.display()));
-                match self.outcome(variant, seed, &path, interrupted, observer)? {
+                match self.outcome(contestant, seed, &path, interrupted, observer)? {
                     Some(outcome) => outcomes.push(outcome),
                     None => return Ok(None),
                 }
@@ -81,26 +93,21 @@ impl Comparison<'_> {
         Ok(Some(outcomes))
     }
 
-    /// The choices of a variant.
-    fn configure(&self, variant: &Variant, seed: u32) -> Config {
-        let mut config = self.base.clone();
-        config.seed = seed;
-        config.task.settings.extend((variant.changes)());
-        config
-    }
-
-    /// Trains a variant to its end, from wherever it is, and evaluates it. None if it was interrupted.
+    /// Trains a contestant to its end, from wherever it is, and evaluates it. None if it was interrupted.
     fn outcome(
         &self,
-        variant: &Variant,
+        contestant: &Contestant,
         seed: u32,
         path: &Path,
         interrupted: &AtomicBool,
         observer: &mut (dyn Observer + Send),
     ) -> Result<Option<Outcome>> {
-        let config = self.configure(variant, seed);
+        let config = Config {
+            seed,
+            ..contestant.config.clone()
+        };
+        let task = &*contestant.task;
         let spec = self.entry.check(&config)?;
-        let task = self.task.with_choices(&config)?;
         let begun = path.join("config.toml").exists();
         let run = match begun {
             true => RunDir::open(path)?.claimed()?,
@@ -114,10 +121,10 @@ impl Comparison<'_> {
         if done < config.steps {
             let training = Training {
                 config: &config,
-                task: &*task,
+                task,
                 run: &run,
                 device: self.device,
-                start: self.start,
+                start: contestant.start,
             };
             train(training, from, interrupted, observer)?;
         }
@@ -126,7 +133,7 @@ impl Comparison<'_> {
         }
         let policy = Checkpoint::load(&run.last()?)?.policy;
         Ok(Some(Outcome {
-            variant: variant.name,
+            variant: contestant.name,
             seed,
             rows: metrics::read(&run.metrics_path(), config.steps + config.batch())?.rows,
             evaluation: task.evaluate(&policy, EPISODES)?,
@@ -139,7 +146,7 @@ impl Comparison<'_> {
         config: &Config,
         run: &RunDir,
         spec: &EnvSpec,
-        fingerprint: u32,
+        fingerprint: Fingerprint,
     ) -> Result<Option<Checkpoint>> {
         let found = Config {
             steps: config.steps,
@@ -168,9 +175,9 @@ impl Comparison<'_> {
         #[cfg(feature = "report")]
         self.draw(outcomes)?;
         for (name, text) in [
-            ("ablation.txt", self.summary(outcomes)),
-            ("evaluation.csv", self.evaluations(outcomes)),
-            ("curves.csv", self.curves(outcomes)),
+            (format!("{}.txt", self.title), self.summary(outcomes)),
+            ("evaluation.csv".into(), self.evaluations(outcomes)),
+            ("curves.csv".into(), self.curves(outcomes)),
         ] {
             write_whole(&self.out.join(name), text.as_bytes())?;
         }
@@ -182,7 +189,7 @@ impl Comparison<'_> {
         use super::figures::points;
         use crate::report::ablation::{Method, draw};
         let of = |name: &'static str| outcomes.iter().filter(move |o| o.variant == name);
-        let methods = self.ablation.variants.iter().enumerate();
+        let methods = self.contestants.iter().enumerate();
         let methods = methods.map(|(colour, variant)| Method {
             name: variant.name.to_string(),
             colour,
@@ -191,17 +198,17 @@ impl Comparison<'_> {
                 .collect(),
         });
         Ok(draw(
-            &self.out.join("ablation.png"),
+            &self.out.join(format!("{}.png", self.title)),
             &methods.collect::<Vec<_>>(),
         )?)
     }
 
-    /// A table of the variants: means over the seeds.
+    /// A table of all: means over the seeds.
     pub fn summary(&self, outcomes: &[Outcome]) -> String {
-        let measures = self.ablation.measures;
+        let measures = self.measures;
         let mut titles = vec!["variant", "seeds", "success %", "of each seed"];
         titles.extend(measures.iter().map(|measure| measure.title));
-        let row = |variant: &Variant| {
+        let row = |variant: &Contestant| {
             let found = outcomes
                 .iter()
                 .filter(|outcome| outcome.variant == variant.name);
@@ -224,13 +231,13 @@ impl Comparison<'_> {
             }));
             row
         };
-        let rows: Vec<_> = self.ablation.variants.iter().map(row).collect();
+        let rows: Vec<_> = self.contestants.iter().map(row).collect();
         table(&titles, &rows)
     }
 
     /// The evaluations as CSV.
     fn evaluations(&self, outcomes: &[Outcome]) -> String {
-        let names = self.ablation.measures.iter().map(|measure| measure.name);
+        let names = self.measures.iter().map(|measure| measure.name);
         let mut text = csv(["variant", "seed", "episodes", "success"]
             .into_iter()
             .chain(names.clone()));
@@ -250,7 +257,7 @@ impl Comparison<'_> {
 
     /// The updates as CSV.
     fn curves(&self, outcomes: &[Outcome]) -> String {
-        let rates = self.ablation.rates;
+        let rates = self.rates;
         let first = [
             "variant", "seed", "steps", "wall_s", "level", "episodes", "success",
         ];

@@ -1,0 +1,92 @@
+//! A low-level policy that learns no more, on the host.
+
+use crate::env::EnvSpec;
+use crate::nn::Policy;
+use crate::rl::amp::FrozenDiscriminator;
+
+/// A low-level policy with its discriminator, neither of which learns any more.
+pub struct FrozenLowLevel {
+    /// Observes the body, then a latent.
+    pub policy: Policy,
+    /// Tells what the policy was to move like.
+    pub discriminator: FrozenDiscriminator,
+    /// Numbers that a body observes of itself, then those of a latent.
+    widths: [usize; 2],
+}
+
+impl FrozenLowLevel {
+    /// The low level of bodies that observe so many numbers of themselves, with latents of so many: the `widths`.
+    ///
+    /// # Errors
+    /// The policy observes other things.
+    pub fn new(
+        policy: Policy,
+        discriminator: FrozenDiscriminator,
+        widths: [usize; 2],
+    ) -> Result<FrozenLowLevel, String> {
+        let (observation, [style, latent]) = (policy.observation(), widths);
+        let wanted = style.checked_add(latent);
+        if observation.grid.is_some() || wanted != Some(observation.vector) || latent < 2 {
+            let dim = observation.dim();
+            return Err(format!(
+                "it observes {dim} numbers, which are not {style} of a body and {latent} of a latent"
+            ));
+        }
+        Ok(FrozenLowLevel {
+            policy,
+            discriminator,
+            widths,
+        })
+    }
+
+    /// Numbers that a body observes of itself, then those of a latent.
+    pub fn widths(&self) -> [usize; 2] {
+        self.widths
+    }
+
+    /// Numbers of a latent.
+    pub fn latent(&self) -> usize {
+        self.widths[1]
+    }
+
+    /// The dimensions of environments of a body, as a policy sees them that acts through this one.
+    ///
+    /// # Errors
+    /// It is of another body.
+    pub fn steered(&self, body: &EnvSpec) -> Result<EnvSpec, String> {
+        let (style, action) = (self.widths[0], self.policy.action());
+        if (style, action) != (body.style, body.action) || body.observation.grid.is_some() {
+            return Err(format!(
+                "it is of a body that observes {style} numbers of itself and has {action} drives, not of one with {} and {}",
+                body.style, body.action
+            ));
+        }
+        Ok(EnvSpec {
+            action: self.latent(),
+            dt: super::STEPS_PER_DECISION as f32 * body.dt,
+            ..*body
+        })
+    }
+
+    /// A checksum of all that decides what it does and rewards.
+    pub fn fingerprint(&self) -> u32 {
+        let mut hasher = crc32fast::Hasher::new();
+        let moments = self.policy.normalizer.as_ref();
+        let moments = moments.map_or(&[][..], |normalizer| normalizer.moments());
+        let [parameters, style_moments] = self.discriminator.learned();
+        for numbers in [&self.policy.parameters, moments, parameters, style_moments] {
+            hasher.update(bytemuck::cast_slice(numbers));
+        }
+        hasher.finalize()
+    }
+
+    /// Mean actions `[rows][action]` of bodies that observe `[rows][observation]`, under latents `[rows][latent]`.
+    pub fn act(&self, observation: &[f32], latents: &[f32]) -> Vec<f32> {
+        let [style, latent] = self.widths;
+        let latents = latents.chunks_exact(latent);
+        let width = observation.len() / latents.len().max(1);
+        let rows = observation.chunks_exact(width).zip(latents);
+        let input = rows.flat_map(|(row, latent)| row[..style].iter().chain(latent));
+        self.policy.mean(&input.copied().collect::<Vec<f32>>())
+    }
+}

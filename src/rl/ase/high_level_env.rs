@@ -1,0 +1,247 @@
+//! Environments of a body as environments of latents.
+
+use super::batch_low_level::BatchLowLevel;
+use super::{FrozenLowLevel, STEPS_PER_DECISION};
+use crate::container::{Section, SectionError};
+use crate::env::live_view::LiveView;
+use crate::env::{EnvSpec, Transition, VecEnv};
+use crate::gpu::{Array, Device};
+use crate::kernels::learn::{keep_first_end, style_windows, sum_decision};
+use anyhow::Result;
+
+/// Environments of a body whose agents act through a frozen low level: an action is a direction on its sphere of
+/// latents (see [`low_level_input`](crate::kernels::learn::low_level_input)), by which the low level's mean plays
+/// five steps.
+///
+/// A decision's reward is a fifth of the sum of its steps' rewards, its style reward the mean of what the low
+/// level's discriminator gives for its steps. Where a step ends an episode, the decision ends so, and what follows
+/// in it does not count: the new episode begins under the old latent. Statistics are the body's: lengths are counted
+/// in its steps.
+pub struct HighLevelEnv {
+    device: Device,
+    spec: EnvSpec,
+    inner: Box<dyn VecEnv>,
+    low_level: BatchLowLevel,
+    /// `[rows][action]` of the body.
+    action: Array,
+    /// `[rows][observation]` before and after the present step.
+    before: Array,
+    after: Array,
+    /// The moments before and after the present step, `[rows][2 style]`.
+    windows: Array,
+    step: StepColumns,
+}
+
+/// What one step of the inner environments leaves, `[rows]`; of its final observations `[rows][observation]`.
+struct StepColumns {
+    reward: Array,
+    style_reward: Array,
+    termination: Array<u32>,
+    group: Array<u32>,
+    final_observation: Array,
+}
+
+impl StepColumns {
+    fn new(device: &Device, rows: usize, observation: usize) -> Self {
+        StepColumns {
+            reward: Array::zeroed(device, rows),
+            style_reward: Array::zeroed(device, rows),
+            termination: Array::zeroed(device, rows),
+            group: Array::zeroed(device, rows),
+            final_observation: Array::zeroed(device, rows * observation),
+        }
+    }
+
+    fn transition(&mut self) -> Transition<'_> {
+        Transition {
+            step: 0,
+            reward: &mut self.reward,
+            style_reward: &mut self.style_reward,
+            termination: &mut self.termination,
+            group: &mut self.group,
+            final_observation: &mut self.final_observation,
+        }
+    }
+}
+
+impl HighLevelEnv {
+    /// Environments around those of a body on the same device.
+    ///
+    /// # Errors
+    /// The low level is of another body, or the device has no room for it.
+    pub fn new(
+        inner: Box<dyn VecEnv>,
+        low_level: &FrozenLowLevel,
+        device: &Device,
+    ) -> Result<Self> {
+        let body = *inner.spec();
+        let (rows, observation) = (body.rows(), body.observation.dim());
+        let spec = low_level.steered(&body).map_err(anyhow::Error::msg)?;
+        Ok(HighLevelEnv {
+            low_level: BatchLowLevel::new(low_level, device, rows)?,
+            action: Array::zeroed(device, rows * body.action),
+            before: Array::zeroed(device, rows * observation),
+            after: Array::zeroed(device, rows * observation),
+            windows: Array::zeroed(device, rows * 2 * body.style),
+            step: StepColumns::new(device, rows, observation),
+            device: device.clone(),
+            spec,
+            inner,
+        })
+    }
+
+    /// Plays a step of the inner environments, whose observation is `before`; it leaves `after`.
+    fn play(&mut self, latents: &Array, at: usize) {
+        let (low_level, action) = (&mut self.low_level, &mut self.action);
+        low_level.act(&self.before, latents, at, action);
+        self.inner.step(&self.action, 0, self.step.transition());
+        self.inner.observe(&mut self.after, 0);
+        self.write_windows();
+        let reward = &mut self.step.style_reward;
+        self.low_level.reward(&self.windows, reward);
+    }
+
+    fn write_windows(&mut self) {
+        let params = style_windows::Params {
+            steps: 1,
+            rows: self.spec.rows() as u32,
+            observation: self.spec.observation.dim() as u32,
+            style: self.spec.style as u32,
+            final_steps: 1,
+        };
+        let (last, termination) = (&self.step.final_observation, &self.step.termination);
+        match &self.device {
+            Device::Cpu => style_windows::twin(
+                self.before.host(),
+                self.after.host(),
+                last.host(),
+                termination.host(),
+                self.windows.host_mut(),
+                &params,
+            ),
+            Device::Gpu(gpu) => style_windows::launch(
+                gpu,
+                self.before.buffer(),
+                self.after.buffer(),
+                last.buffer(),
+                termination.buffer(),
+                self.windows.buffer(),
+                &params,
+            ),
+        }
+    }
+
+    /// Takes the step of this number into the decision.
+    fn count(&self, step: usize, decision: &mut Transition) {
+        self.keep_first_end(step, decision);
+        let params = sum_decision::Params {
+            rows: self.spec.rows() as u32,
+            at: (decision.step * self.spec.rows()) as u32,
+            step: step as u32,
+            reward_share: 1.0 / STEPS_PER_DECISION as f32,
+        };
+        let own = &self.step;
+        match &self.device {
+            Device::Cpu => sum_decision::twin(
+                own.reward.host(),
+                own.style_reward.host(),
+                own.termination.host(),
+                own.group.host(),
+                decision.reward.host_mut(),
+                decision.style_reward.host_mut(),
+                decision.termination.host_mut(),
+                decision.group.host_mut(),
+                &params,
+            ),
+            Device::Gpu(gpu) => sum_decision::launch(
+                gpu,
+                own.reward.buffer(),
+                own.style_reward.buffer(),
+                own.termination.buffer(),
+                own.group.buffer(),
+                decision.reward.buffer(),
+                decision.style_reward.buffer(),
+                decision.termination.buffer(),
+                decision.group.buffer(),
+                &params,
+            ),
+        }
+    }
+
+    /// Keeps the final observations of the decision's first ends.
+    fn keep_first_end(&self, step: usize, decision: &mut Transition) {
+        let observation = self.spec.observation.dim();
+        let params = keep_first_end::Params {
+            rows: self.spec.rows() as u32,
+            observation: observation as u32,
+            at: (decision.step * self.spec.rows()) as u32,
+            final_at: (self.spec.final_row(decision.step) * observation) as u32,
+            step: step as u32,
+        };
+        let own = &self.step;
+        match &self.device {
+            Device::Cpu => keep_first_end::twin(
+                own.termination.host(),
+                decision.termination.host(),
+                own.final_observation.host(),
+                decision.final_observation.host_mut(),
+                &params,
+            ),
+            Device::Gpu(gpu) => keep_first_end::launch(
+                gpu,
+                own.termination.buffer(),
+                decision.termination.buffer(),
+                own.final_observation.buffer(),
+                decision.final_observation.buffer(),
+                &params,
+            ),
+        }
+    }
+}
+
+impl VecEnv for HighLevelEnv {
+    fn spec(&self) -> &EnvSpec {
+        &self.spec
+    }
+
+    fn observe(&mut self, out: &mut Array, at: usize) {
+        self.inner.observe(out, at);
+    }
+
+    fn step(&mut self, action: &Array, at: usize, mut out: Transition) {
+        self.inner.observe(&mut self.before, 0);
+        for step in 0..STEPS_PER_DECISION {
+            self.play(action, at);
+            self.count(step, &mut out);
+            std::mem::swap(&mut self.before, &mut self.after);
+        }
+    }
+
+    fn stat_names(&self) -> &'static [&'static str] {
+        self.inner.stat_names()
+    }
+
+    fn stats(&mut self, out: &mut Array) {
+        self.inner.stats(out);
+    }
+
+    fn set_level(&mut self, level: u32) {
+        self.inner.set_level(level);
+    }
+
+    fn live_view(&mut self) -> Result<Option<LiveView>> {
+        self.inner.live_view()
+    }
+
+    fn contact_overflow(&self) -> Result<u64> {
+        self.inner.contact_overflow()
+    }
+
+    fn save(&self, to: &mut Section) -> Result<()> {
+        self.inner.save(to)
+    }
+
+    fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
+        self.inner.load(from)
+    }
+}
