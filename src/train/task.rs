@@ -13,6 +13,7 @@ use super::locomotion::Locomotion;
 use super::metrics::UpdateMetrics;
 #[cfg(feature = "report")]
 use super::run_dir::RunDir;
+use crate::env::humanoid::boxing::BoxingTask;
 use crate::env::humanoid::driver::BodyDriver;
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
@@ -23,6 +24,7 @@ use crate::rl::ase::FrozenLowLevel;
 use crate::rl::ppo::PpoLearner;
 use anyhow::Result;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A task by name, before its choices are made.
 pub struct TaskEntry {
@@ -198,6 +200,11 @@ pub trait Task: Send + Sync {
 
     /// What `play` and `render` show of a simulated body.
     fn body(&self) -> Option<BodyEpisodes> {
+        None
+    }
+
+    /// What two policies of the task fight in, if they do.
+    fn bouts(&self) -> Option<Arc<BoxingTask>> {
         None
     }
 }

@@ -7,6 +7,7 @@ use crate::env::live_view::LiveView;
 use crate::env::{EnvSpec, Transition, VecEnv};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::{keep_first_end, style_windows, sum_decision};
+use crate::rl::step_columns::StepColumns;
 use anyhow::Result;
 
 /// Environments of a body whose agents act through a frozen low level: an action is a direction on its sphere of
@@ -30,38 +31,6 @@ pub struct HighLevelEnv {
     /// The moments before and after the present step, `[rows][2 style]`.
     windows: Array,
     step: StepColumns,
-}
-
-/// What one step of the inner environments leaves, `[rows]`; of its final observations `[rows][observation]`.
-struct StepColumns {
-    reward: Array,
-    style_reward: Array,
-    termination: Array<u32>,
-    group: Array<u32>,
-    final_observation: Array,
-}
-
-impl StepColumns {
-    fn new(device: &Device, rows: usize, observation: usize) -> Self {
-        StepColumns {
-            reward: Array::zeroed(device, rows),
-            style_reward: Array::zeroed(device, rows),
-            termination: Array::zeroed(device, rows),
-            group: Array::zeroed(device, rows),
-            final_observation: Array::zeroed(device, rows * observation),
-        }
-    }
-
-    fn transition(&mut self) -> Transition<'_> {
-        Transition {
-            step: 0,
-            reward: &mut self.reward,
-            style_reward: &mut self.style_reward,
-            termination: &mut self.termination,
-            group: &mut self.group,
-            final_observation: &mut self.final_observation,
-        }
-    }
 }
 
 impl HighLevelEnv {
@@ -223,6 +192,10 @@ impl VecEnv for HighLevelEnv {
 
     fn stats(&mut self, out: &mut Array) {
         self.inner.stats(out);
+    }
+
+    fn row_stats(&self, row: usize) -> &[f32] {
+        self.inner.row_stats(row)
     }
 
     fn set_level(&mut self, level: u32) {

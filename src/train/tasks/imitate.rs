@@ -33,6 +33,7 @@ fn preset(preset: Preset) -> TaskPreset {
         ppo: styled(preset),
         amp: Some(discriminator(preset)),
         ase: None,
+        self_play: None,
         steps: 2_500_000,
     }
 }

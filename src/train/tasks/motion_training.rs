@@ -2,7 +2,8 @@
 //! [`MotionTask`].
 
 use super::motions;
-use crate::env::EnvBatch;
+use crate::env::{EnvBatch, VecEnv};
+use crate::env::humanoid::boxing::BoxingTask;
 use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::task::{HumanoidTask, open};
 use crate::gpu::Device;
@@ -14,6 +15,7 @@ use crate::rl::amp::SkillRewards;
 use crate::rl::ase::{
     FrozenLowLevel, HighLevelDriver, HighLevelEnv, LatentDraw, LatentDriver, LatentEnv,
 };
+use crate::rl::self_play::{SelfPlay, SelfPlayEnv, SelfPlayLearner};
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
@@ -35,6 +37,10 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
 
     /// What the performer does where no recordings are given.
     const PERFORMANCE: motions::Performance;
+    /// Most episodes of an evaluation in a training.
+    const MOST_EPISODES: usize = usize::MAX;
+    /// Names of metrics that are fractions of the episodes' steps, and of the statistics that count these steps.
+    const STEP_FRACTIONS: &'static [(&'static str, &'static str)] = &[];
 
     /// The choices of a configuration.
     ///
@@ -61,6 +67,16 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
     /// What makes them move differently under different latents.
     fn skill_rewards(&self) -> SkillRewards {
         SkillRewards::default()
+    }
+
+    /// How it is learned by self-play, if it is: its environments are then of two agents.
+    fn self_play(&self) -> Option<&SelfPlay> {
+        None
+    }
+
+    /// What two policies fight in, if they do.
+    fn bouts(_: Arc<Self::Played>) -> Option<Arc<BoxingTask>> {
+        None
     }
 
     /// Plays `episodes` episodes, whose starts depend on `seed` alone.
@@ -152,10 +168,14 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         EnvBatch::open(device, envs, None, |part| {
             let first = part.start;
             let body = open(device, task.clone(), part, seed)?;
-            Ok(match (&self.low_level, &latents) {
+            let acting: Box<dyn VecEnv> = match (&self.low_level, &latents) {
                 (Some(low_level), _) => Box::new(HighLevelEnv::new(body, low_level, device)?),
                 (None, Some(draw)) => Box::new(LatentEnv::new(body, draw, device, first, seed)),
                 (None, None) => body,
+            };
+            Ok(match self.task.self_play() {
+                Some(_) => Box::new(SelfPlayEnv::new(acting, device, first, seed)?),
+                None => acting,
             })
         })
     }
@@ -166,16 +186,22 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         envs: &EnvBatch,
         device: &Device,
     ) -> Result<Box<dyn Algorithm>> {
-        match (&self.low_level, &config.amp) {
-            (Some(_), _) => motions::steering_learner(config, envs, device),
+        let learner = match (&self.low_level, &config.amp) {
+            (Some(_), _) => motions::steering_learner(config, envs, device)?,
             (None, Some(amp)) => {
                 let (skills, latents) =
                     (self.task.skill_rewards(), self.task.latents(&self.library));
                 let latents = latents.as_ref();
-                motions::learner(config, amp, &skills, latents, &self.library, envs, device)
+                motions::learner(config, amp, &skills, latents, &self.library, envs, device)?
             }
-            (None, None) => ppo_learner(config, envs, device),
-        }
+            (None, None) => ppo_learner(config, envs, device)?,
+        };
+        let Some(self_play) = self.task.self_play() else {
+            return Ok(learner);
+        };
+        let (steps, fractions) = (config.ppo.rollout_length, T::STEP_FRACTIONS);
+        let learner = SelfPlayLearner::new(learner, self_play, envs, steps, fractions)?;
+        Ok(Box::new(learner))
     }
 
     fn driver(&self, policy: &Policy) -> Box<dyn BodyDriver> {
@@ -194,6 +220,7 @@ impl<T: MotionTask> Task for MotionTraining<T> {
     }
 
     fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {
+        let episodes = episodes.min(T::MOST_EPISODES);
         Ok(T::evaluation(&self.rate(policy, episodes)))
     }
 
@@ -209,6 +236,10 @@ impl<T: MotionTask> Task for MotionTraining<T> {
             text: format!("{sentence}\n{}", T::details(&found)),
             json: serde_json::to_value(found)?,
         })
+    }
+
+    fn bouts(&self) -> Option<Arc<BoxingTask>> {
+        T::bouts(self.task.judged(&self.library, EPISODES_SEED))
     }
 
     #[cfg(feature = "report")]

@@ -46,6 +46,7 @@ fn preset(preset: Preset) -> TaskPreset {
             latent,
             ..Ase::default()
         }),
+        self_play: None,
         steps: 20_000_000,
     }
 }

@@ -34,6 +34,7 @@ fn preset(preset: Preset) -> TaskPreset {
         ppo: styled(preset),
         amp: None,
         ase: None,
+        self_play: None,
         steps: 2_500_000,
     }
 }

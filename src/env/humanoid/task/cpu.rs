@@ -103,6 +103,12 @@ impl CpuHumanoidEnv {
         &*self.common.task
     }
 
+    /// What an agent observes now, `[observation]`.
+    pub fn seen(&self, row: usize) -> &[f32] {
+        let dim = self.common.spec.observation.dim();
+        &self.observation[row * dim..][..dim]
+    }
+
     /// Puts the target of an environment elsewhere on the ground, m: see [`HumanoidTask::move_target`].
     pub fn move_target(&mut self, env: usize, at: [f32; 2]) {
         let world = &mut self.batch.worlds[env].state;
@@ -330,6 +336,10 @@ impl VecEnv for CpuHumanoidEnv {
         for episode in &mut self.episodes {
             episode[sums..].fill(0.0);
         }
+    }
+
+    fn row_stats(&self, row: usize) -> &[f32] {
+        &self.episodes[row][sums_at(self.common.measures)..]
     }
 
     fn live_view(&mut self) -> Result<Option<LiveView>> {
