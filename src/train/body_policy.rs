@@ -3,10 +3,10 @@
 use super::checkpoint::Checkpoint;
 use super::config::Config;
 use super::task::Task;
+use crate::env::VecEnv;
 use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::env::humanoid::task::CpuHumanoidEnv;
 use crate::env::humanoid::task::play::play_episodes;
-use crate::env::VecEnv;
 use crate::rl::amp::FrozenDiscriminator;
 use anyhow::{Context, Result};
 

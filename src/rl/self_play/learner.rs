@@ -102,11 +102,11 @@ impl Algorithm for SelfPlayLearner {
         let mut iteration = self.inner.iterate(envs, steps)?;
         let results: Vec<BoutResult> = fighters(envs).flat_map(SelfPlayEnv::take_results).collect();
         self.pool.end_update(self.rollout_length, &results);
+        iteration.losses.extend(self.metrics(&iteration));
         if self.pool.is_due() {
             let own = self.inner.policy()?;
             self.pool.admit(Opponent::Frozen(Box::new(own)));
         }
-        iteration.losses.extend(self.metrics(&iteration));
         Ok(iteration)
     }
 
@@ -116,7 +116,8 @@ impl Algorithm for SelfPlayLearner {
 
     fn start_from(&mut self, policy: &Policy, section: &mut Section) -> Result<(), SectionError> {
         self.inner.start_from(policy, section)?;
-        self.begin_pool().map_err(|error| SectionError(error.to_string()))
+        self.begin_pool()
+            .map_err(|error| SectionError(error.to_string()))
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {
@@ -128,7 +129,8 @@ impl Algorithm for SelfPlayLearner {
 
     fn load(&mut self, from: &mut Section, policy: &Policy) -> Result<(), SectionError> {
         let [observation, action] = self.dims;
-        self.pool.load(&mut from.take_section("pool"), observation, action)?;
+        self.pool
+            .load(&mut from.take_section("pool"), observation, action)?;
         self.inner.load(from, policy)
     }
 }

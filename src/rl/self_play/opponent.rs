@@ -17,13 +17,7 @@ pub enum Opponent {
 impl Opponent {
     /// Actions `[rows][action]` for observations `[rows][observation]`, in the environments of these numbers in the
     /// whole batch: what is drawn depends on them, `seed` and `step_counter` alone.
-    pub fn act(
-        &self,
-        observation: &[f32],
-        envs: &[u32],
-        seed: u32,
-        step_counter: u32,
-    ) -> Vec<f32> {
+    pub fn act(&self, observation: &[f32], envs: &[u32], seed: u32, step_counter: u32) -> Vec<f32> {
         let policy = match self {
             Opponent::Scripted(action) => return action.repeat(envs.len()),
             Opponent::Frozen(policy) => policy,

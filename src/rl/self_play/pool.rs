@@ -145,7 +145,10 @@ impl Pool {
     /// None: it is in host memory.
     pub fn save(&self, to: &mut Section) -> Result<()> {
         let ids: Vec<u32> = self.members.iter().map(|member| member.id).collect();
-        let bouts = self.members.iter().map(|member| [member.games, member.wins]);
+        let bouts = self
+            .members
+            .iter()
+            .map(|member| [member.games, member.wins]);
         to.put("members", ids);
         to.put("since_last", [self.games, self.updates]);
         to.put("next", self.next);
@@ -174,7 +177,11 @@ impl Pool {
             return Err(SectionError(format!("its pool has {count} members")));
         }
         let bouts: Vec<[f64; 2]> = from.take_array("bouts", ids.len())?;
-        if !bouts.as_flattened().iter().all(|sum| (0.0..=1e15).contains(sum)) {
+        if !bouts
+            .as_flattened()
+            .iter()
+            .all(|sum| (0.0..=1e15).contains(sum))
+        {
             return Err(SectionError("its pool's bouts are no counts".into()));
         }
         [self.games, self.updates] = from.get("since_last")?;

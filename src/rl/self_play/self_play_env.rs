@@ -121,7 +121,11 @@ impl SelfPlayEnv {
     /// Puts the learner's actions, `[envs][action]`, and the opponents' beside each other.
     fn act(&mut self, learner: &[f32]) {
         let width = self.spec.action;
-        for (env, action) in learner.chunks_exact(width).take(self.bouts.len()).enumerate() {
+        for (env, action) in learner
+            .chunks_exact(width)
+            .take(self.bouts.len())
+            .enumerate()
+        {
             let [own, _] = self.rows(env);
             self.action.host_mut()[own * width..][..width].copy_from_slice(action);
         }
@@ -174,7 +178,9 @@ impl SelfPlayEnv {
     /// The sums of every inner row, `[2 envs][stats]`.
     fn row_stats(&self) -> Vec<f32> {
         let rows = 0..self.inner.spec().rows();
-        rows.flat_map(|row| self.inner.row_stats(row)).copied().collect()
+        rows.flat_map(|row| self.inner.row_stats(row))
+            .copied()
+            .collect()
     }
 
     /// Counts the bouts that have ended since the inner rows had the sums `before`, and draws those that begin.
@@ -265,7 +271,10 @@ impl VecEnv for SelfPlayEnv {
         self.inner.save(&mut inner)?;
         to.put_section("inner", inner);
         to.put("bout_steps", self.step_counter);
-        let bouts = self.bouts.iter().map(|bout| [bout.agent as u32, bout.opponent]);
+        let bouts = self
+            .bouts
+            .iter()
+            .map(|bout| [bout.agent as u32, bout.opponent]);
         to.put_array("bouts", &bouts.collect::<Vec<_>>());
         to.put_array("bout_sums", &self.sums);
         Ok(())

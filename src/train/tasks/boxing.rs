@@ -108,7 +108,8 @@ impl MotionTask for BoxTask {
     const PERFORMANCE: Performance = Performance::Boxing;
     /// A bout may last for most of a minute, and is of two bodies.
     const MOST_EPISODES: usize = 200;
-    const STEP_FRACTIONS: &'static [(&'static str, &'static str)] = &[("engagement", "engaged_steps")];
+    const STEP_FRACTIONS: &'static [(&'static str, &'static str)] =
+        &[("engagement", "engaged_steps")];
 
     fn of(config: &Config) -> Result<Self, ConfigError> {
         Ok(BoxTask {

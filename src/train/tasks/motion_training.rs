@@ -2,10 +2,10 @@
 //! [`MotionTask`].
 
 use super::motions;
-use crate::env::{EnvBatch, VecEnv};
 use crate::env::humanoid::boxing::BoxingTask;
 use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::task::{HumanoidTask, open};
+use crate::env::{EnvBatch, VecEnv};
 use crate::gpu::Device;
 use crate::nn::Policy;
 use crate::physics::model::Model;
