@@ -55,9 +55,12 @@ pub trait VecEnv: Any + Send {
     /// [`VecEnv::stat_names`].
     fn stats(&mut self, out: &mut Array);
 
-    /// What a row adds to [`VecEnv::stats`] so far; empty where sums are not kept by row on the host.
-    fn row_stats(&self, _row: usize) -> &[f32] {
-        &[]
+    /// What each row would add to [`VecEnv::stats`] now, `[rows][stats]`; empty of environments that do not know.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn row_stats(&self) -> Result<Vec<f32>> {
+        Ok(Vec::new())
     }
 
     /// Episodes that begin from now on are of this level of a [curriculum](super::curriculum).

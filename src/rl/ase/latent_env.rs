@@ -172,8 +172,8 @@ impl VecEnv for LatentEnv {
         self.inner.stats(out);
     }
 
-    fn row_stats(&self, row: usize) -> &[f32] {
-        self.inner.row_stats(row)
+    fn row_stats(&self) -> Result<Vec<f32>> {
+        self.inner.row_stats()
     }
 
     fn set_level(&mut self, level: u32) {

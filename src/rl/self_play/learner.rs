@@ -100,7 +100,9 @@ impl Algorithm for SelfPlayLearner {
         let opponents = Arc::new(self.pool.opponents());
         fighters(envs).for_each(|part| part.set_opponents(&opponents));
         let mut iteration = self.inner.iterate(envs, steps)?;
-        let results: Vec<BoutResult> = fighters(envs).flat_map(SelfPlayEnv::take_results).collect();
+        let results: Result<Vec<Vec<BoutResult>>> =
+            fighters(envs).map(SelfPlayEnv::take_results).collect();
+        let results = results?.concat();
         self.pool.end_update(self.rollout_length, &results);
         iteration.losses.extend(self.metrics(&iteration));
         if self.pool.is_due() {

@@ -7,6 +7,7 @@ use crate::env::termination::RUNNING;
 use crate::env::{EnvSpec, Transition, VecEnv};
 use crate::gpu::{Array, Device};
 use crate::kernels::rng::{index_below, random4};
+use crate::nn::rows;
 use crate::rl::step_columns::StepColumns;
 use anyhow::{Result, bail};
 use std::sync::Arc;
@@ -17,24 +18,26 @@ const BOUTS: u32 = 0x424f_5554;
 const OPPONENT_SEED: u32 = 0x4f50_5053;
 
 /// Environments of two agents, of which the learner plays one: either, by chance, drawn anew for every bout. The other
-/// is played by an opponent that is drawn then, too; each acts once a step, for all its rows together. Rewards,
-/// terminations, observations and statistics are the learner's.
+/// is played by an opponent that is drawn then, too; each acts once a step, for all its rows together, and on the host.
+/// Rewards, terminations, observations and statistics are the learner's.
 ///
 /// A bout whose opponent has left the pool is played on by the newest.
 pub struct SelfPlayEnv {
+    device: Device,
     inner: Box<dyn VecEnv>,
     spec: EnvSpec,
     opponents: Arc<Opponents>,
     /// `[envs]`
     bouts: Vec<Bout>,
-    /// Bouts that have ended since they were last taken.
-    results: Vec<BoutResult>,
+    /// Bouts that have ended since they were last taken, unless the device was lost.
+    results: Result<Vec<BoutResult>>,
     /// Sums over the learner's episodes that have ended, `[stats]`, and the index of successes in them.
     sums: Vec<f32>,
     successes: usize,
-    /// `[2 envs][observation]` and `[2 envs][action]` of the inner environments.
+    /// Sums of all inner rows, `[2 envs][stats]`.
+    row_stats: Vec<f32>,
+    /// `[2 envs][observation]` of the inner environments.
     observation: Array,
-    action: Array,
     step: StepColumns,
     seed: u32,
     /// Number of the first environment in the whole batch.
@@ -56,33 +59,31 @@ impl SelfPlayEnv {
     /// batch. Their first opponent repeats the action at rest.
     ///
     /// # Errors
-    /// They have other agents, do not tell who wins, or are on a GPU.
+    /// They have other agents, or do not tell who wins; or the device was lost.
     pub fn new(
         inner: Box<dyn VecEnv>,
         device: &Device,
         first: usize,
         seed: u32,
     ) -> Result<SelfPlayEnv> {
-        let spec = *inner.spec();
-        if let Device::Gpu(_) = device {
-            bail!("self-play is not there on GPUs yet: give --device cpu");
-        }
-        let names = inner.stat_names();
+        let (spec, names) = (*inner.spec(), inner.stat_names());
+        let row_stats = inner.row_stats()?;
         let successes = names.iter().position(|name| *name == "successes");
-        let (2, Some(successes)) = (spec.agents, successes) else {
+        let (2, Some(successes), false) = (spec.agents, successes, row_stats.is_empty()) else {
             bail!("self-play takes environments of two agents that tell who wins");
         };
-        let zeros = |len: usize| Array::zeroed(device, spec.rows() * len);
+        let observation = spec.observation.dim();
         let mut envs = SelfPlayEnv {
             opponents: Arc::new(Opponents::scripted(at_rest(&*inner))),
             bouts: Vec::new(),
-            results: Vec::new(),
+            results: Ok(Vec::new()),
             sums: vec![0.0; names.len()],
             successes,
-            observation: zeros(spec.observation.dim()),
-            action: zeros(spec.action),
-            step: StepColumns::new(device, spec.rows(), spec.observation.dim()),
+            row_stats,
+            observation: Array::zeroed(device, spec.rows() * observation),
+            step: StepColumns::new(device, spec.rows(), observation),
             spec: EnvSpec { agents: 1, ..spec },
+            device: device.clone(),
             seed,
             first: first as u32,
             step_counter: 0,
@@ -98,8 +99,11 @@ impl SelfPlayEnv {
     }
 
     /// The bouts that have ended since the last call.
-    pub fn take_results(&mut self) -> Vec<BoutResult> {
-        std::mem::take(&mut self.results)
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn take_results(&mut self) -> Result<Vec<BoutResult>> {
+        std::mem::replace(&mut self.results, Ok(Vec::new()))
     }
 
     /// Who plays whom from now on.
@@ -112,99 +116,90 @@ impl SelfPlayEnv {
         }
     }
 
-    /// The rows of the learner and of its opponent.
-    fn rows(&self, env: usize) -> [usize; 2] {
-        let agent = self.bouts[env].agent;
-        [2 * env + agent, 2 * env + 1 - agent]
+    /// The inner rows of the learner, `[envs]`.
+    fn own_rows(&self) -> Vec<u32> {
+        let bouts = self.bouts.iter().enumerate();
+        bouts
+            .map(|(env, bout)| (2 * env + bout.agent) as u32)
+            .collect()
     }
 
-    /// Puts the learner's actions, `[envs][action]`, and the opponents' beside each other.
-    fn act(&mut self, learner: &[f32]) {
-        let width = self.spec.action;
-        for (env, action) in learner
-            .chunks_exact(width)
-            .take(self.bouts.len())
-            .enumerate()
-        {
-            let [own, _] = self.rows(env);
-            self.action.host_mut()[own * width..][..width].copy_from_slice(action);
-        }
+    /// Plays a step; the learner's actions are `[envs][action]`.
+    fn play(&mut self, learner: &Array, mut out: Transition) -> Result<()> {
+        let action = self.beside_opponents(learner)?;
+        self.inner.step(&action, 0, self.step.transition());
+        self.step_counter += 1;
+        let own = self.step.pick(&self.device, &self.own_rows())?;
+        own.count(&self.device, &self.spec, 0, 1.0, &mut out);
+        self.end_bouts(&own.termination.read(&self.device)?)
+    }
+
+    /// The actions of the inner environments, `[2 envs][action]`.
+    fn beside_opponents(&mut self, learner: &Array) -> Result<Array> {
         self.inner.observe(&mut self.observation, 0);
-        let opponents = self.opponents.clone();
-        for (index, opponent) in opponents.iter().enumerate() {
-            let met = |env: &usize| opponents.index(self.bouts[*env].opponent) == index;
+        let theirs = self.opponents_actions(&self.observation.read(&self.device)?);
+        let theirs = Array::from_slice(&self.device, &theirs);
+        let all = rows::join(&self.device, &[learner, &theirs]);
+        let envs = self.bouts.len();
+        let pairs = self.bouts.iter().enumerate().flat_map(|(env, bout)| {
+            let [mut first, mut second] = [env, envs + env];
+            if bout.agent == 1 {
+                std::mem::swap(&mut first, &mut second);
+            }
+            [first as u32, second as u32]
+        });
+        let numbers: Vec<u32> = pairs.collect();
+        Ok(rows::pick(&self.device, &all, self.spec.action, &numbers))
+    }
+
+    /// What the opponents do, `[envs][action]`, when the agents observe `[2 envs][observation]`.
+    fn opponents_actions(&self, observation: &[f32]) -> Vec<f32> {
+        let (dim, width) = (self.spec.observation.dim(), self.spec.action);
+        let mut all = vec![0.0; self.bouts.len() * width];
+        for (index, opponent) in self.opponents.iter().enumerate() {
+            let met = |env: &usize| self.opponents.index(self.bouts[*env].opponent) == index;
             let envs: Vec<usize> = (0..self.bouts.len()).filter(met).collect();
             if envs.is_empty() {
                 continue;
             }
+            let row =
+                |&env: &usize| &observation[(2 * env + 1 - self.bouts[env].agent) * dim..][..dim];
+            let seen: Vec<f32> = envs.iter().flat_map(row).copied().collect();
             let numbers: Vec<u32> = envs.iter().map(|&env| self.first + env as u32).collect();
-            let (seed, now) = (self.seed ^ OPPONENT_SEED, self.step_counter);
-            let actions = opponent.act(&self.seen_by_opponents(&envs), &numbers, seed, now);
-            for (&env, action) in envs.iter().zip(actions.chunks_exact(width)) {
-                let [_, other] = self.rows(env);
-                self.action.host_mut()[other * width..][..width].copy_from_slice(action);
+            let seed = self.seed ^ OPPONENT_SEED;
+            let actions = opponent.act(&seen, &numbers, seed, self.step_counter);
+            for (env, action) in envs.iter().zip(actions.chunks_exact(width)) {
+                all[env * width..][..width].copy_from_slice(action);
             }
         }
+        all
     }
 
-    fn seen_by_opponents(&self, envs: &[usize]) -> Vec<f32> {
-        let dim = self.spec.observation.dim();
-        let row = |&env: &usize| {
-            let [_, other] = self.rows(env);
-            &self.observation.host()[other * dim..][..dim]
-        };
-        envs.iter().flat_map(row).copied().collect()
-    }
-
-    /// Hands over the learner's rows of a step.
-    fn hand_over(&self, out: &mut Transition) {
-        let (own, dim) = (&self.step, self.spec.observation.dim());
-        let first = out.step * self.bouts.len();
-        let final_row = self.spec.final_row(out.step);
-        for env in 0..self.bouts.len() {
-            let ([from, _], to) = (self.rows(env), first + env);
-            out.reward.host_mut()[to] = own.reward.host()[from];
-            out.style_reward.host_mut()[to] = own.style_reward.host()[from];
-            out.termination.host_mut()[to] = own.termination.host()[from];
-            out.group.host_mut()[to] = own.group.host()[from];
-            if own.termination.host()[from] != RUNNING {
-                let last = &own.final_observation.host()[from * dim..][..dim];
-                let to = (final_row + env) * dim;
-                out.final_observation.host_mut()[to..][..dim].copy_from_slice(last);
-            }
+    /// Counts the bouts that have ended, by how the learner's did, and draws those that begin.
+    fn end_bouts(&mut self, ends: &[u32]) -> Result<()> {
+        if ends.iter().all(|&end| end == RUNNING) {
+            return Ok(());
         }
-    }
-
-    /// The sums of every inner row, `[2 envs][stats]`.
-    fn row_stats(&self) -> Vec<f32> {
-        let rows = 0..self.inner.spec().rows();
-        rows.flat_map(|row| self.inner.row_stats(row))
-            .copied()
-            .collect()
-    }
-
-    /// Counts the bouts that have ended since the inner rows had the sums `before`, and draws those that begin.
-    fn end_bouts(&mut self, before: &[f32]) {
-        let (now, stats) = (self.row_stats(), self.sums.len());
-        for env in 0..self.bouts.len() {
-            let [own, other] = self.rows(env);
-            if self.step.termination.host()[own] == RUNNING {
-                continue;
-            }
-            let gained = |row: usize, stat: usize| {
-                let at = row * stats + stat;
-                now[at] - before[at]
+        let (now, stats) = (self.inner.row_stats()?, self.sums.len());
+        for env in (0..ends.len()).filter(|&env| ends[env] != RUNNING) {
+            let Bout { agent, opponent } = self.bouts[env];
+            let gained = |agent: usize, stat: usize| {
+                let at = (2 * env + agent) * stats + stat;
+                now[at] - self.row_stats[at]
             };
-            let [won, lost] = [own, other].map(|row| gained(row, self.successes));
-            for (stat, sum) in self.sums.iter_mut().enumerate() {
-                *sum += gained(own, stat);
+            let [won, lost] = [agent, 1 - agent].map(|agent| gained(agent, self.successes));
+            let own = self.sums.iter().enumerate();
+            self.sums = own.map(|(stat, sum)| sum + gained(agent, stat)).collect();
+            if let Ok(results) = &mut self.results {
+                results.push(BoutResult {
+                    opponent,
+                    score: (0.5 * (1.0 + won - lost)).clamp(0.0, 1.0),
+                });
             }
-            self.results.push(BoutResult {
-                opponent: self.bouts[env].opponent,
-                score: (0.5 * (1.0 + won - lost)).clamp(0.0, 1.0),
-            });
             self.bouts[env] = self.draw(env);
         }
+        self.row_stats = now;
+        Ok(())
     }
 }
 
@@ -226,21 +221,17 @@ impl VecEnv for SelfPlayEnv {
 
     fn observe(&mut self, out: &mut Array, at: usize) {
         self.inner.observe(&mut self.observation, 0);
-        let dim = self.spec.observation.dim();
-        let rows = out.host_mut()[at..].chunks_exact_mut(dim);
-        for (env, row) in rows.take(self.bouts.len()).enumerate() {
-            let [own, _] = self.rows(env);
-            row.copy_from_slice(&self.observation.host()[own * dim..][..dim]);
-        }
+        let (device, dim) = (&self.device, self.spec.observation.dim());
+        let own = rows::pick(device, &self.observation, dim, &self.own_rows());
+        rows::replace(device, out, at, &own);
     }
 
-    fn step(&mut self, action: &Array, at: usize, mut out: Transition) {
-        self.act(&action.host()[at..]);
-        let before = self.row_stats();
-        self.inner.step(&self.action, 0, self.step.transition());
-        self.step_counter += 1;
-        self.hand_over(&mut out);
-        self.end_bouts(&before);
+    fn step(&mut self, action: &Array, at: usize, out: Transition) {
+        let numbers = self.bouts.len() * self.spec.action;
+        let learner = action.copy(&self.device, at..at + numbers);
+        if let Err(error) = self.play(&learner, out) {
+            self.results = Err(error);
+        }
     }
 
     fn stat_names(&self) -> &'static [&'static str] {
@@ -248,9 +239,10 @@ impl VecEnv for SelfPlayEnv {
     }
 
     fn stats(&mut self, out: &mut Array) {
-        // The inner sums are of both agents; they are to begin anew.
+        // The inner sums are of both agents; they begin anew.
         self.inner.stats(out);
-        out.host_mut().copy_from_slice(&self.sums);
+        self.row_stats.fill(0.0);
+        *out = Array::from_slice(&self.device, &self.sums);
         self.sums.fill(0.0);
     }
 
@@ -282,6 +274,8 @@ impl VecEnv for SelfPlayEnv {
 
     fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
         self.inner.load(&mut from.take_section("inner"))?;
+        let lost = |error: anyhow::Error| SectionError(error.to_string());
+        self.row_stats = self.inner.row_stats().map_err(lost)?;
         self.step_counter = from.get("bout_steps")?;
         self.sums = from.take_finite("bout_sums", self.sums.len())?;
         let bouts: Vec<[u32; 2]> = from.take_array("bouts", self.bouts.len())?;

@@ -338,8 +338,10 @@ impl VecEnv for CpuHumanoidEnv {
         }
     }
 
-    fn row_stats(&self, row: usize) -> &[f32] {
-        &self.episodes[row][sums_at(self.common.measures)..]
+    fn row_stats(&self) -> Result<Vec<f32>> {
+        let sums = sums_at(self.common.measures);
+        let rows = self.episodes.iter().flat_map(|episode| &episode[sums..]);
+        Ok(rows.copied().collect())
     }
 
     fn live_view(&mut self) -> Result<Option<LiveView>> {

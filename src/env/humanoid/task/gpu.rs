@@ -160,6 +160,14 @@ impl VecEnv for GpuHumanoidEnv {
         );
     }
 
+    fn row_stats(&self) -> Result<Vec<f32>> {
+        let (rows, stats) = (self.common.spec.rows(), self.stat_names().len());
+        let episodes = self.episodes.read(&self.worlds.gpu)?;
+        let sums = &episodes[sums_at(self.common.measures) * rows..];
+        let numbers = (0..rows * stats).map(|at| sums[at % stats * rows + at / stats]);
+        Ok(numbers.collect())
+    }
+
     fn live_view(&mut self) -> Result<Option<LiveView>> {
         let (batch, gpu) = (&self.worlds.batch, &self.worlds.gpu);
         let buffers = BodyBuffers {
