@@ -109,6 +109,20 @@ fn every_fighter_begins_in_a_recorded_moment_on_its_side() {
     );
 }
 
+/// What a bout does depends on its number, not on who else is in its part of a batch.
+#[test]
+fn parts_begin_as_all_do() {
+    let begin = |envs| {
+        observed(&mut CpuHumanoidEnv::unstaggered(
+            task(&Boxing::default()),
+            envs,
+            4,
+        ))
+    };
+    let parts = [begin(0..2), begin(2..6)].concat();
+    assert!(parts == begin(0..6));
+}
+
 /// What a fighter sees, by formulas in the world's axes that are turned by its heading in the end.
 #[test]
 fn observations_are_what_they_say() {
@@ -279,14 +293,19 @@ fn only_hands_on_torso_and_head_do_damage() {
         );
         lay(&mut first.state.q, fighter);
     }
-    // Who draws back fast enough is not pushed.
+    // Red's arm points ahead, somewhat up.
+    second.state.q.clone_from(&model.qpos0);
     second.state.v.fill(0.0);
+    let shoulder = model.joints.iter().find(|joint| joint.name == "red/right_shoulder");
+    let arm = Quat::from_rotation_y(-1.2 * FRAC_PI_2);
+    let arm = [arm.w, arm.x, arm.y, arm.z];
+    second.state.q[shoulder.unwrap().q..][..4].copy_from_slice(&arm);
     let (poses, _) = bodies(&model, &second.state.q, &second.state.v);
     let head = model.body("blue/head").unwrap();
     let head = poses[head].at(model.bodies[head].com);
     let hand = poses[model.body("red/right_hand").unwrap()].position;
     for k in 0..3 {
-        // Somewhat to the side of its centre.
+        // Somewhat behind its centre.
         let aside = if k == 0 { 0.1 } else { 0.0 };
         second.state.q[NQ + k] += hand[k] - head[k] + aside;
     }

@@ -24,7 +24,7 @@ pub fn play(
 }
 
 /// [`play`] by whoever decides on actions `[rows][action]` for observations `[rows][observation]`.
-fn play_by(
+pub fn play_by(
     envs: &mut CpuHumanoidEnv,
     mut act: impl FnMut(&[f32]) -> Vec<f32>,
     mut after: impl FnMut(&CpuHumanoidEnv, &[u32]) -> bool,
@@ -73,7 +73,9 @@ impl DrivenStep {
         self.play_by(envs, |observation| driver.act(observation, state));
     }
 
-    fn play_by(&mut self, envs: &mut CpuHumanoidEnv, act: impl FnOnce(&[f32]) -> Vec<f32>) {
+    /// [`DrivenStep::play`] by whoever decides on actions `[rows][action]` for observations
+    /// `[rows][observation]`.
+    pub fn play_by(&mut self, envs: &mut CpuHumanoidEnv, act: impl FnOnce(&[f32]) -> Vec<f32>) {
         envs.observe(&mut self.observation, 0);
         let action = Array::Host(act(self.observation.host()));
         let out = Transition {
