@@ -92,11 +92,11 @@ impl TournamentReport {
         (one != other).then(|| self.wins[one][other] as f64 / self.bouts.max(1) as f64)
     }
 
-    /// A table of all: ratings, and percents of bouts won against each.
+    /// A table of all: ratings, and percents of bouts won against each by number.
     pub fn summary(&self) -> String {
         let numbers: Vec<String> = (1..=self.players.len()).map(|n| n.to_string()).collect();
-        let mut titles = vec!["", "player", "elo", "95 % of", "won % against"];
-        titles.extend(numbers.iter().skip(1).map(|_| ""));
+        let mut titles = vec!["", "player", "elo", "in 95 of 100 cases"];
+        titles.extend(numbers.iter().map(String::as_str));
         let row = |one: usize| {
             let player = &self.players[one];
             let rates = (0..self.players.len()).map(|other| match self.win_rate(one, other) {

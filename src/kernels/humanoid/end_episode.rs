@@ -136,7 +136,7 @@ pub fn twin(
     let (rows, count) = (envs * agents, params.measures as usize);
     let (mut q, mut v) = (vec![0.0; params.nq as usize], vec![0.0; params.nv as usize]);
     let (mut own, mut measured) = (vec![0.0; fields(count)], vec![0.0; count]);
-    for row in 0..rows {
+    for (row, &task_end) in task_end.iter().enumerate().take(rows) {
         let (env, agent) = (row / agents, row % agents);
         gather(state, envs, env, 0, &mut q);
         gather(state, envs, env, q.len(), &mut v);
@@ -148,7 +148,7 @@ pub fn twin(
             v: &v,
             poses: &poses_of(poses, envs, env)[agent * params.bodies as usize..],
             measures: &measured,
-            task_end: task_end[row],
+            task_end,
         };
         let end = end(&step, &mut reward[at], &mut own, params);
         scatter(episode, rows, row, 0, &own);

@@ -9,6 +9,7 @@ use footwork::env::humanoid::boxing::corners::Corners;
 use footwork::env::humanoid::boxing::evaluate::evaluate;
 use footwork::env::humanoid::boxing::{Boxing, BoxingTask, boxing_spec};
 use footwork::env::humanoid::driver::{BodyDriver, DriverState};
+use footwork::env::humanoid::task::play::DrivenStep;
 use footwork::env::humanoid::task::{CpuHumanoidEnv, HumanoidTask, open};
 use footwork::env::live_view::LiveView;
 use footwork::env::{Stats, VecEnv, termination};
@@ -37,7 +38,7 @@ fn opened(boxing: &Boxing, envs: usize) -> CpuHumanoidEnv {
     CpuHumanoidEnv::unstaggered(task(boxing), 0..envs, 4)
 }
 
-/// A step of all environments, or of some.
+/// Plays steps of all environments.
 fn steps(envs: &mut CpuHumanoidEnv, count: usize) -> Played {
     play(&Device::Cpu, envs, count, 1)
 }
@@ -107,6 +108,20 @@ fn every_fighter_begins_in_a_recorded_moment_on_its_side() {
         seen.iter()
             .all(|value| value.is_finite() && value.abs() < 100.0)
     );
+}
+
+/// What a bout does depends on its number, not on who else is in its part of a batch.
+#[test]
+fn parts_begin_as_all_do() {
+    let begin = |envs| {
+        observed(&mut CpuHumanoidEnv::unstaggered(
+            task(&Boxing::default()),
+            envs,
+            4,
+        ))
+    };
+    let parts = [begin(0..2), begin(2..6)].concat();
+    assert!(parts == begin(0..6));
 }
 
 /// What a fighter sees, by formulas in the world's axes that are turned by its heading in the end.
@@ -202,11 +217,10 @@ fn exchanged_fighters_exchange_rewards_and_observations() {
         let first_joint = carried.len() - 2 * joints;
         carried[first_joint..].rotate_left(joints);
         envs.task_states[1] = carried;
-        let rest = Array::Host(envs.rest_action().repeat(4));
-        let spec = *envs.spec();
-        let mut columns = Columns::new(&spec);
-        envs.step(&rest, 0, columns.transition());
-        let reward = columns.reward.host();
+        let rest = envs.rest_action().repeat(4);
+        let mut step = DrivenStep::new(&envs);
+        step.play_by(&mut envs, |_| rest);
+        let reward = step.reward.host();
         assert!(
             (reward[0] - reward[3]).abs() < 2e-2 * reward[0].abs().max(1.0),
             "{reward:?}"
@@ -222,35 +236,6 @@ fn exchanged_fighters_exchange_rewards_and_observations() {
             for (at, (a, b)) in rows[a].iter().zip(rows[b]).enumerate() {
                 assert!((a - b).abs() < 2e-2 * a.abs().max(1.0), "{at}: {a} {b}");
             }
-        }
-    }
-}
-
-/// Columns of one step.
-struct Columns {
-    reward: Array,
-    termination: Array<u32>,
-    group: Array<u32>,
-    final_observation: Array,
-}
-
-impl Columns {
-    fn new(spec: &footwork::env::EnvSpec) -> Columns {
-        Columns {
-            reward: Array::zeroed(&Device::Cpu, spec.rows()),
-            termination: Array::zeroed(&Device::Cpu, spec.rows()),
-            group: Array::zeroed(&Device::Cpu, spec.rows()),
-            final_observation: Array::zeroed(&Device::Cpu, spec.rows() * spec.observation.dim()),
-        }
-    }
-
-    fn transition(&mut self) -> footwork::env::Transition<'_> {
-        footwork::env::Transition {
-            step: 0,
-            reward: &mut self.reward,
-            termination: &mut self.termination,
-            group: &mut self.group,
-            final_observation: &mut self.final_observation,
         }
     }
 }
@@ -279,18 +264,25 @@ fn only_hands_on_torso_and_head_do_damage() {
         );
         lay(&mut first.state.q, fighter);
     }
-    // Who draws back fast enough is not pushed.
+    // Red's arm points ahead, somewhat up.
+    second.state.q.clone_from(&model.qpos0);
     second.state.v.fill(0.0);
+    let shoulder = model
+        .joints
+        .iter()
+        .find(|joint| joint.name == "red/right_shoulder");
+    let arm = Quat::from_rotation_y(-1.2 * FRAC_PI_2);
+    let arm = [arm.w, arm.x, arm.y, arm.z];
+    second.state.q[shoulder.unwrap().q..][..4].copy_from_slice(&arm);
     let (poses, _) = bodies(&model, &second.state.q, &second.state.v);
     let head = model.body("blue/head").unwrap();
     let head = poses[head].at(model.bodies[head].com);
     let hand = poses[model.body("red/right_hand").unwrap()].position;
     for k in 0..3 {
-        // Somewhat to the side of its centre.
+        // Somewhat behind its centre.
         let aside = if k == 0 { 0.1 } else { 0.0 };
         second.state.q[NQ + k] += hand[k] - head[k] + aside;
     }
-    let spec = *envs.spec();
     let mut forces = vec![(Vec::new(), Vec::new()); 2];
     let pairs: Vec<u32> = task(&Boxing::default())
         .force_pairs()
@@ -315,7 +307,6 @@ fn only_hands_on_torso_and_head_do_damage() {
         on_pairs[1].length() > 1.0,
         "the right hand on the head: {on_pairs:?}"
     );
-    assert_eq!(spec.rows(), 4);
     let named = |body: u32| model.bodies[body as usize].name.as_str();
     for (number, pair) in pairs.chunks_exact(2).enumerate() {
         let (own, other) = if number < 4 {

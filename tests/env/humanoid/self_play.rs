@@ -2,8 +2,8 @@
 //! Oracle: the same fighters, stepped by hand; counts by hand. Bar: equal bit for bit; drawn fractions within what
 //! chance allows.
 
-use super::style::{LIBRARY, imitate, rules};
-use crate::support::inputs::{POISON, same};
+use super::style::{LIBRARY, imitate, play, rules};
+use crate::support::inputs::{POISON, gpu, same};
 use footwork::container::Section;
 use footwork::env::humanoid::boxing::{Boxing, BoxingTask};
 use footwork::env::humanoid::task::open;
@@ -21,12 +21,16 @@ const FIRST: usize = 5;
 const SEED: u32 = 3;
 
 fn fighters() -> Box<dyn VecEnv> {
+    fighters_on(&CPU)
+}
+
+fn fighters_on(device: &Device) -> Box<dyn VecEnv> {
     let boxing = Boxing {
         rules: rules(0.3),
         ..Boxing::default()
     };
     let task = Arc::new(BoxingTask::new(&boxing, &LIBRARY, SEED));
-    open(&CPU, task, FIRST..FIRST + ENVS, SEED).unwrap()
+    open(device, task, FIRST..FIRST + ENVS, SEED).unwrap()
 }
 
 fn self_play() -> SelfPlayEnv {
@@ -148,7 +152,7 @@ fn the_learner_sees_its_fighter_and_the_opponents_move_the_others() {
             );
             ended += usize::from(got.ends[env] != termination::RUNNING);
         }
-        results.extend(envs.take_results());
+        results.extend(envs.take_results().unwrap());
     }
     assert!(ended > ENVS && results.len() == ended, "{ended}");
     // Statistics are the learner's.
@@ -213,6 +217,40 @@ fn self_play_goes_on_from_a_saved_state() {
     section.put_array("bouts", &[[2u32, 0]; ENVS]);
     section.take_array::<[u32; 2]>("bouts", ENVS).unwrap();
     assert!(self_play().load(&mut section).is_err());
+}
+
+/// Sides and opponents are the same; what is played is what the physics' rounding leaves of it.
+#[test]
+fn self_play_on_a_gpu_is_that_on_the_cpu() {
+    let (cpu, gpu) = (CPU, Device::from(gpu()));
+    let opponents = Arc::new(pool(&*fighters()).opponents());
+    let [one, other] = [&cpu, &gpu].map(|device| {
+        let mut envs = SelfPlayEnv::new(fighters_on(device), device, FIRST, SEED).unwrap();
+        envs.set_opponents(&opponents);
+        let played = play(device, &mut envs, 12, 1);
+        let mut sums = Array::zeroed(device, envs.stat_names().len());
+        envs.stats(&mut sums);
+        (
+            played,
+            envs.take_results().unwrap(),
+            bouts(&envs),
+            sums.read(device).unwrap(),
+        )
+    });
+    assert!(one.1.len() > ENVS && one.1 == other.1);
+    assert_eq!((one.2, one.3[0]), (other.2, other.3[0]));
+    let (one, other) = (one.0, other.0);
+    assert_eq!((&one.ends, &one.groups), (&other.ends, &other.groups));
+    let near = |what: &str, a: &[f32], b: &[f32]| {
+        for (at, (a, b)) in a.iter().zip(b).enumerate() {
+            // Speeds of joints are of the order of ten.
+            let bar = 3e-2 * (1.0 + a.abs());
+            assert!((a - b).abs() < bar, "{what} {at}: {a} {b}");
+        }
+    };
+    near("observation", &one.observations, &other.observations);
+    near("final observation", &one.finals, &other.finals);
+    near("reward", &one.rewards, &other.rewards);
 }
 
 #[test]
@@ -353,7 +391,7 @@ fn opponents_are_drawn_by_how_often_they_are_not_beaten() {
     pool.end_update(0, &[won(0), won(1), won(1), won(1), lost(1), lost(2)]);
     let drawn = |pool: &Pool| {
         let opponents = pool.opponents();
-        let mut counts = [0.0; 4];
+        let mut counts = [0.0f64; 4];
         for number in 0..10_000 {
             let [bits, ..] = random4(8, number, 0, 1);
             counts[opponents.draw(bits) as usize] += 1e-4;

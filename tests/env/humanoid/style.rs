@@ -96,7 +96,7 @@ pub fn play(device: &Device, envs: &mut dyn VecEnv, steps: usize, seed: u32) -> 
         let out = Transition {
             step,
             reward: &mut reward,
-            style_reward: &mut Array::zeroed(device, 1),
+            style_reward: &mut Array::zeroed(device, steps * rows),
             termination: &mut ends,
             group: &mut groups,
             final_observation: &mut finals,

@@ -421,9 +421,8 @@ fn boxing_rewards_agree() {
         let twin: &Outputs = &forms.twin;
         for (form, got) in forms.shaders() {
             close(form, &got.0, &twin.0, |_| 1e-5);
-            close(form, &got.1, &twin.1, |row| {
-                1e-5 * twin.1[row].abs().max(1.0)
-            });
+            // Terms of some hundreds may cancel each other.
+            close(form, &got.1, &twin.1, |_| 2e-4);
             close(form, &got.2, &twin.2, |_| 1e-5);
             assert_eq!((&got.3, &got.4), (&twin.3, &twin.4), "{form}");
         }

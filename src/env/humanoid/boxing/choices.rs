@@ -78,7 +78,8 @@ impl Default for Boxing {
             close_weight: 4.0,
             facing_weight: 10.0,
             fall_weight: 200.0,
-            // In proportion to the damage it is weighed against.
+            // In proportion to the damage it is weighed against. The printed weight takes 23 from every step of somebody
+            // who moves as the performer's boxing does, more than closeness and facing give.
             energy_weight: 1e-5,
             penalty_weight: 30.0,
             clinch_distance: 0.5,

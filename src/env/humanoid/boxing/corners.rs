@@ -55,8 +55,7 @@ impl Standing {
 }
 
 impl BodyDriver for Standing {
-    fn act(&self, observation: &[f32], state: &mut DriverState) -> Vec<f32> {
-        state.steps += 1;
+    fn act(&self, observation: &[f32], _: &mut DriverState) -> Vec<f32> {
         self.rest.repeat(observation.len() / self.observation)
     }
 }

@@ -222,6 +222,7 @@ impl HumanoidTask for BoxingTask {
             "successes",
             "steps",
             "returns",
+            // Of who has fallen or left the arena.
             "fall",
             "damage",
             "damage_from_behind",

@@ -22,7 +22,7 @@ pub fn play(
 
 /// [`play`] by whoever decides on actions `[rows][action]` for observations `[rows][observation]`, and remembers
 /// `state`.
-fn play_by<S>(
+pub fn play_by<S>(
     envs: &mut CpuHumanoidEnv,
     mut act: impl FnMut(&[f32], &mut S) -> Vec<f32>,
     mut state: S,
@@ -74,7 +74,9 @@ impl DrivenStep {
         self.play_by(envs, |observation| driver.act(observation, state));
     }
 
-    fn play_by(&mut self, envs: &mut CpuHumanoidEnv, act: impl FnOnce(&[f32]) -> Vec<f32>) {
+    /// [`DrivenStep::play`] by whoever decides on actions `[rows][action]` for observations
+    /// `[rows][observation]`.
+    pub fn play_by(&mut self, envs: &mut CpuHumanoidEnv, act: impl FnOnce(&[f32]) -> Vec<f32>) {
         envs.observe(&mut self.observation, 0);
         let action = Array::Host(act(self.observation.host()));
         let out = Transition {
