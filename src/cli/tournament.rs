@@ -5,11 +5,9 @@ use super::run::{Moved, Run};
 use super::say::{say, show, tell};
 use anyhow::Result;
 use clap::Args;
-use footwork::env::humanoid::boxing::BoxingTask;
 use footwork::train::run_dir::RunDir;
-use footwork::train::tournament::{TournamentPlayer, TournamentReport, play};
+use footwork::train::tournament::{Bouts, TournamentPlayer, TournamentReport, play};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 #[derive(Args)]
 pub struct Tournament {
@@ -39,7 +37,7 @@ pub struct Tournament {
 /// Those who fight, and what they fight in.
 #[derive(Default)]
 struct Field {
-    task: Option<Arc<BoxingTask>>,
+    bouts: Option<Bouts>,
     players: Vec<TournamentPlayer>,
 }
 
@@ -55,20 +53,20 @@ impl Tournament {
         for run in &self.checkpoints {
             field.enter(run, true)?;
         }
-        let (Some(task), 2..) = (&field.task, field.players.len()) else {
+        let (Some(Bouts { task, still }), 2..) = (field.bouts, field.players.len()) else {
             let why = "a tournament takes two checkpoints at least: name more runs, or give --checkpoints";
             return Err(Usage(why.into()).into());
         };
         field.players.push(TournamentPlayer {
-            name: "(stands)".into(),
-            driver: Box::new(task.standing()),
+            name: "(does nothing)".into(),
+            driver: still,
         });
         let count = field.players.len();
         tell!(
             "{count} players, {} bouts",
             count * (count - 1) / 2 * self.bouts
         );
-        let found = play(task, &field.players, self.bouts / 2);
+        let found = play(&task, &field.players, self.bouts / 2);
         #[cfg(feature = "report")]
         if let Some(path) = &self.plot {
             draw(path, &found)?;
@@ -89,7 +87,7 @@ impl Field {
             skills: None,
         };
         let run = Run::open(path, moved)?;
-        let Some(task) = run.task.bouts() else {
+        let Some(bouts) = run.task.bouts() else {
             let (path, task) = (path.display(), &run.config.task.name);
             let why = format!("{path} is a run of `{task}`, in which nobody fights");
             return Err(Usage(why).into());
@@ -106,7 +104,7 @@ impl Field {
                 driver: run.task.driver(&policy),
             });
         }
-        self.task.get_or_insert(task);
+        self.bouts.get_or_insert(bouts);
         Ok(())
     }
 }

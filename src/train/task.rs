@@ -13,7 +13,7 @@ use super::locomotion::Locomotion;
 use super::metrics::UpdateMetrics;
 #[cfg(feature = "report")]
 use super::run_dir::RunDir;
-use crate::env::humanoid::boxing::BoxingTask;
+use super::tournament::Bouts;
 use crate::env::humanoid::driver::BodyDriver;
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
@@ -24,7 +24,6 @@ use crate::rl::ase::FrozenLowLevel;
 use crate::rl::ppo::PpoLearner;
 use anyhow::Result;
 use std::path::Path;
-use std::sync::Arc;
 
 /// A task by name, before its choices are made.
 pub struct TaskEntry {
@@ -204,7 +203,7 @@ pub trait Task: Send + Sync {
     }
 
     /// What two policies of the task fight in, if they do.
-    fn bouts(&self) -> Option<Arc<BoxingTask>> {
+    fn bouts(&self) -> Option<Bouts> {
         None
     }
 }

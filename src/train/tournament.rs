@@ -9,6 +9,14 @@ use crate::report::table::table;
 use serde::Serialize;
 use std::sync::Arc;
 
+/// What policies of a task fight in.
+pub struct Bouts {
+    /// The task.
+    pub task: Arc<BoxingTask>,
+    /// Who does nothing.
+    pub still: Box<dyn BodyDriver>,
+}
+
 /// Somebody who fights.
 pub struct TournamentPlayer {
     /// In tables.

@@ -29,7 +29,7 @@ fn fighters_learn_by_themselves_and_are_evaluated() {
     let told = place.done(&format!(
         "train box --skills low {SMALL} --steps 96 --out steered"
     ));
-    assert!(told.out.contains("opponent that stands"), "{told:?}");
+    assert!(told.out.contains("opponent that does nothing"), "{told:?}");
     let config = place.read("alone/config.toml");
     assert!(config.contains("[self_play]"), "{config}");
     for run in ["alone", "steered"] {
@@ -96,7 +96,7 @@ fn checkpoints_meet_in_tournaments() {
     ));
     let told = place.done("tournament --checkpoints run --bouts 4 --plot wins.png");
     assert!(
-        told.out.contains("run/steps-0000000064") && told.out.contains("(stands)"),
+        told.out.contains("run/steps-0000000064") && told.out.contains("(does nothing)"),
         "{told:?}"
     );
     assert!(place.path("wins.png").exists());

@@ -140,15 +140,12 @@ impl SelfPlayEnv {
         let theirs = self.opponents_actions(&self.observation.read(&self.device)?);
         let theirs = Array::from_slice(&self.device, &theirs);
         let all = rows::join(&self.device, &[learner, &theirs]);
-        let envs = self.bouts.len();
-        let pairs = self.bouts.iter().enumerate().flat_map(|(env, bout)| {
-            let [mut first, mut second] = [env, envs + env];
-            if bout.agent == 1 {
-                std::mem::swap(&mut first, &mut second);
-            }
-            [first as u32, second as u32]
-        });
-        let numbers: Vec<u32> = pairs.collect();
+        let envs = self.bouts.len() as u32;
+        let pair = |(env, bout): (u32, &Bout)| match bout.agent {
+            0 => [env, envs + env],
+            _ => [envs + env, env],
+        };
+        let numbers: Vec<u32> = (0..envs).zip(&self.bouts).flat_map(pair).collect();
         Ok(rows::pick(&self.device, &all, self.spec.action, &numbers))
     }
 

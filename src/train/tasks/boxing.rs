@@ -137,12 +137,11 @@ impl MotionTask for BoxTask {
     fn evaluate(
         task: Arc<BoxingTask>,
         _: &MotionLibrary,
-        driver: &dyn BodyDriver,
+        drivers: [&dyn BodyDriver; 2],
         episodes: usize,
         seed: u32,
     ) -> BoxingReport {
-        let standing = task.standing();
-        evaluate(task, [driver, &standing], episodes, seed)
+        evaluate(task, drivers, episodes, seed)
     }
 
     fn evaluation(found: &BoxingReport) -> Evaluation {
@@ -165,7 +164,7 @@ impl MotionTask for BoxTask {
 
     fn sentence(&self, found: &Evaluation) -> String {
         format!(
-            "{:.1} % of {} bouts won against an opponent that stands, {:.1} % lost; {:.2} knock-downs a bout",
+            "{:.1} % of {} bouts won against an opponent that does nothing, {:.1} % lost; {:.2} knock-downs a bout",
             100.0 * found.success,
             found.episodes,
             100.0 * found.measure("lost"),

@@ -82,7 +82,7 @@ impl MotionTask for Imitate {
     fn evaluate(
         task: Arc<ImitateTask>,
         _library: &MotionLibrary,
-        driver: &dyn BodyDriver,
+        [driver, _]: [&dyn BodyDriver; 2],
         episodes: usize,
         seed: u32,
     ) -> FidelityReport {

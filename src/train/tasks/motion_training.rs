@@ -3,8 +3,9 @@
 
 use super::motions;
 use crate::env::humanoid::boxing::BoxingTask;
+use crate::env::humanoid::boxing::corners::Standing;
 use crate::env::humanoid::driver::BodyDriver;
-use crate::env::humanoid::task::{HumanoidTask, open};
+use crate::env::humanoid::task::{HumanoidTask, open, spec};
 use crate::env::{EnvBatch, VecEnv};
 use crate::gpu::Device;
 use crate::nn::Policy;
@@ -14,6 +15,7 @@ use crate::rl::Algorithm;
 use crate::rl::amp::SkillRewards;
 use crate::rl::ase::{
     FrozenLowLevel, HighLevelDriver, HighLevelEnv, LatentDraw, LatentDriver, LatentEnv,
+    SteadyDriver,
 };
 use crate::rl::self_play::{SelfPlay, SelfPlayEnv, SelfPlayLearner};
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
@@ -22,6 +24,7 @@ use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::fingerprint::Fingerprint;
 use crate::train::low_level;
 use crate::train::task::{Loaded, Task, ppo_learner};
+use crate::train::tournament::Bouts;
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
@@ -79,11 +82,12 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
         None
     }
 
-    /// Plays `episodes` episodes, whose starts depend on `seed` alone.
+    /// Plays `episodes` episodes, whose starts depend on `seed` alone, under the policy's driver; one who does nothing is
+    /// there, too, to compare with or to play against.
     fn evaluate(
         task: Arc<Self::Played>,
         library: &MotionLibrary,
-        driver: &dyn BodyDriver,
+        drivers: [&dyn BodyDriver; 2],
         episodes: usize,
         seed: u32,
     ) -> Self::Report;
@@ -128,8 +132,18 @@ pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
 impl<T: MotionTask> MotionTraining<T> {
     fn rate(&self, policy: &Policy, episodes: usize) -> T::Report {
         let task = self.task.judged(&self.library, EPISODES_SEED);
-        let driver = self.driver(policy);
-        T::evaluate(task, &self.library, &*driver, episodes, EPISODES_SEED)
+        let (driver, still) = (self.driver(policy), self.still(&*task));
+        let drivers = [&*driver, &*still];
+        T::evaluate(task, &self.library, drivers, episodes, EPISODES_SEED)
+    }
+
+    /// A driver that does nothing: it holds the pose at rest or, over a low level, one latent.
+    fn still(&self, task: &dyn HumanoidTask) -> Box<dyn BodyDriver> {
+        let observation = spec(task.model(), task.observation(), 1).observation.dim();
+        match &self.low_level {
+            Some(low_level) => Box::new(SteadyDriver::new(low_level, observation)),
+            None => Box::new(Standing::new(task.rest_action(), observation)),
+        }
     }
 }
 
@@ -238,8 +252,10 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         })
     }
 
-    fn bouts(&self) -> Option<Arc<BoxingTask>> {
-        T::bouts(self.task.judged(&self.library, EPISODES_SEED))
+    fn bouts(&self) -> Option<Bouts> {
+        let task = T::bouts(self.task.judged(&self.library, EPISODES_SEED))?;
+        let still = self.still(&*task);
+        Some(Bouts { task, still })
     }
 
     #[cfg(feature = "report")]

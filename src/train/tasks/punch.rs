@@ -165,7 +165,7 @@ impl MotionTask for TargetTask {
     fn evaluate(
         task: Arc<PunchTask>,
         library: &MotionLibrary,
-        driver: &dyn BodyDriver,
+        [driver, _]: [&dyn BodyDriver; 2],
         episodes: usize,
         seed: u32,
     ) -> PunchReport {

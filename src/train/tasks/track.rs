@@ -67,7 +67,7 @@ impl MotionTask for Tracking {
     fn evaluate(
         task: Arc<TrackTask>,
         _library: &MotionLibrary,
-        driver: &dyn BodyDriver,
+        [driver, _]: [&dyn BodyDriver; 2],
         episodes: usize,
         seed: u32,
     ) -> TrackReport {

@@ -172,7 +172,7 @@ fn sides_and_opponents_are_drawn_for_every_bout() {
     envs.set_opponents(&Arc::new(pool.opponents()));
     let rest = envs.rest_action().repeat(ENVS);
     let (mut sides, mut met) = ([0; 2], [0; 3]);
-    for _ in 0..120 {
+    for _ in 0..400 {
         let before = bouts(&envs);
         let ends = step(&mut envs, &rest).ends;
         for ((before, after), end) in before.iter().zip(bouts(&envs)).zip(ends) {
