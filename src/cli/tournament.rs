@@ -6,7 +6,7 @@ use super::say::{say, show, tell};
 use anyhow::Result;
 use clap::Args;
 use footwork::train::run_dir::RunDir;
-use footwork::train::tournament::{Bouts, TournamentPlayer, TournamentReport, play};
+use footwork::train::tournament::{Bouts, TournamentPlayer, play};
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
@@ -43,7 +43,7 @@ struct Field {
 
 impl Tournament {
     pub fn run(self) -> Result<()> {
-        if !(2..=100_000).contains(&self.bouts) || self.bouts % 2 == 1 {
+        if !(2..=100_000).contains(&self.bouts) || !self.bouts.is_multiple_of(2) {
             return Err(Usage("--bouts must be an even number from 2 to 100000".into()).into());
         }
         let mut field = Field::default();
@@ -118,7 +118,7 @@ fn name(checkpoint: &Path) -> String {
 }
 
 #[cfg(feature = "report")]
-fn draw(path: &Path, found: &TournamentReport) -> Result<()> {
+fn draw(path: &Path, found: &footwork::train::tournament::TournamentReport) -> Result<()> {
     let names: Vec<String> = found
         .players
         .iter()

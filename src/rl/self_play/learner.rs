@@ -3,7 +3,7 @@
 use super::pool::{BoutResult, Pool};
 use super::{Opponent, SelfPlay, SelfPlayEnv};
 use crate::container::{Section, SectionError};
-use crate::env::{EnvBatch, VecEnv};
+use crate::env::EnvBatch;
 use crate::nn::Policy;
 use crate::rl::{Algorithm, Iteration};
 use anyhow::{Result, bail};
@@ -38,11 +38,8 @@ impl SelfPlayLearner {
         rollout_length: usize,
         fractions: &'static [(&'static str, &'static str)],
     ) -> Result<Self> {
-        let of_self_play = |part: &Box<dyn VecEnv>| {
-            let part: &dyn Any = &**part;
-            part.is::<SelfPlayEnv>()
-        };
-        if !envs.parts.iter().all(of_self_play) {
+        let of_self_play = |part: &dyn Any| part.is::<SelfPlayEnv>();
+        if !envs.parts.iter().all(|part| of_self_play(&**part)) {
             bail!("a learner by self-play takes environments of self-play");
         }
         let spec = envs.spec();
