@@ -1,34 +1,37 @@
 // Ends episodes: of worlds that have diverged, of bodies that have fallen, where the task says so, and out of
-// steps. One invocation an environment.
+// steps. One invocation an environment. Rows are agents, those of an environment side by side.
 //
 // Bounds of loops depend on a buffer, too: lavapipe compiles a shader anew for every launch in which the uniform
 // alone decides how often a loop runs.
 //
 // state        [nq + nv][envs], after the step
 // poses        [bodies * 7][envs], of that state
-// measures     [measures][envs]: what the task measured of this step
-// task_end     [envs]: how the step ends for the task
-// episode      [fields][envs]: step, limit, return and measures of the running episode, then sums over
+// measures     [measures][rows]: what the task measured of this step
+// task_end     [rows]: how the step ends for the task, and whether the agent leads; for all of an environment or none
+// episode      [fields][rows]: step, limit, return and measures of the running episode, then sums over
 //              those that have ended: how many, their successes, steps, returns, falls, measures
-// reward       [envs], from `at` on; none of a world that has diverged
-// termination  [envs], from `at` on
-// ended        [envs]: the same, of this step alone
+// reward       [rows], from `at` on; none of a world that has diverged
+// termination  [rows], from `at` on
+// ended        [envs]: that of an agent, of this step alone
 
 #import termination
+#import fallen
 
 struct Params {
     envs: u32,
+    agents: u32,         // of an environment
     at: u32,
     nq: u32,
     nv: u32,
-    bodies: u32,         // of the character
-    head: u32,
+    bodies: u32,         // of an agent; all agents' come first
+    head: u32,           // of the first agent, as those that follow
     pelvis: u32,
     right_foot: u32,
     left_foot: u32,
     measures: u32,
     max_steps: u32,      // of an episode
     successes: u32,      // ends that are successes, 1 << end
+    falls_end: u32,      // 1 if a fall ends the episode
     min_head: f32,       // m; below them it has fallen
     min_pelvis: f32,
     min_body: f32,       // of all but the feet
@@ -59,19 +62,9 @@ const FALLS = 4u;
 const SUM_FIELDS = 5u;
 
 var<private> env: u32;
+var<private> row: u32;
 
-fn bound(count: u32) -> u32 { return select(0u, count, task_end[env] <= FAILED); }
-
-fn height(body: u32) -> f32 { return poses[(7u * body + 2u) * params.envs + env]; }
-
-fn has_fallen() -> bool {
-    var low = height(params.head) < params.min_head || height(params.pelvis) < params.min_pelvis;
-    for (var body = 0u; body < bound(params.bodies); body++) {
-        let foot = body == params.right_foot || body == params.left_foot;
-        low = low || (!foot && height(body) < params.min_body);
-    }
-    return low;
-}
+fn bound(count: u32) -> u32 { return select(0u, count, task_end[env] <= FAILED + LEADS); }
 
 // Compilers may assume that there is no NaN; bits they must take as they are.
 fn number(value: f32) -> bool { return (bitcast<u32>(value) & 0x7f800000u) != 0x7f800000u; }
@@ -85,15 +78,16 @@ fn has_diverged() -> bool {
     return diverged;
 }
 
-fn assign(field: u32, value: f32) { episode[field * params.envs + env] = value; }
-fn add(field: u32, value: f32) { episode[field * params.envs + env] += value; }
-fn field(at: u32) -> f32 { return episode[at * params.envs + env]; }
+fn rows() -> u32 { return params.envs * params.agents; }
+fn assign(field: u32, value: f32) { episode[field * rows() + row] = value; }
+fn add(field: u32, value: f32) { episode[field * rows() + row] += value; }
+fn field(at: u32) -> f32 { return episode[at * rows() + row]; }
 
 // Adds the episode to the sums and begins the next.
-fn finish(end: u32) {
+fn finish(end: u32, success: bool) {
     let sums = RUNNING_FIELDS + params.measures;
     add(sums + EPISODES, 1.0);
-    add(sums + SUCCESSES, f32(params.successes >> end & 1u));
+    add(sums + SUCCESSES, select(0.0, 1.0, success));
     add(sums + STEPS, field(STEP));
     add(sums + RETURNS, field(RETURN));
     add(sums + FALLS, select(0.0, 1.0, end == FAILED));
@@ -106,25 +100,39 @@ fn finish(end: u32) {
     assign(RETURN, 0.0);
 }
 
-@compute @workgroup_size(64)
-fn end_episode(@builtin(global_invocation_id) id: vec3u) {
-    env = id.x;
-    if (env >= params.envs) { return; }
-    let at = params.at + env;
-    let diverged = has_diverged();
+// Takes the step of an agent in; how it ends.
+fn end_step(agent: u32, diverged: bool) -> u32 {
+    let at = params.at + row;
     add(STEP, 1.0);
     if (diverged) {
         reward[at] = 0.0;
     } else {
         add(RETURN, reward[at]);
         for (var k = 0u; k < bound(params.measures); k++) {
-            add(RUNNING_FIELDS + k, measures[k * params.envs + env]);
+            add(RUNNING_FIELDS + k, measures[k * rows() + row]);
         }
     }
+    let task = task_end[row] % LEADS;
+    let leads = task_end[row] >= LEADS;
+    let falls = params.falls_end == 1u && has_fallen(agent * params.bodies);
     var end = select(RUNNING, TRUNCATED, field(STEP) >= field(LIMIT));
-    end = select(end, task_end[env], task_end[env] != RUNNING);
-    end = select(end, FAILED, diverged || has_fallen());
-    termination[at] = end;
-    ended[env] = end;
-    if (end != RUNNING) { finish(end); }
+    end = select(end, task, task != RUNNING);
+    end = select(end, FAILED, diverged || falls);
+    // Who has failed has won nothing.
+    let success = (params.successes >> end & 1u) == 1u || (leads && end != FAILED);
+    if (end != RUNNING) { finish(end, success); }
+    return end;
+}
+
+@compute @workgroup_size(64)
+fn end_episode(@builtin(global_invocation_id) id: vec3u) {
+    env = id.x;
+    if (env >= params.envs) { return; }
+    let diverged = has_diverged();
+    for (var agent = 0u; agent < bound(params.agents); agent++) {
+        row = env * params.agents + agent;
+        let end = end_step(agent, diverged);
+        termination[params.at + row] = end;
+        ended[env] = end;
+    }
 }

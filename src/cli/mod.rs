@@ -16,6 +16,7 @@ mod render;
 mod run;
 pub mod say;
 mod sim;
+mod tournament;
 mod train;
 mod usage;
 #[cfg(feature = "viewer")]
@@ -46,6 +47,8 @@ enum Command {
     Compare(compare::Compare),
     /// Evaluate a trained policy on a fixed set of episodes
     Eval(eval::Eval),
+    /// Let trained fighters meet each other: who beats whom, and ratings
+    Tournament(tournament::Tournament),
     /// Open a window on a trained policy, or on motion
     #[cfg(feature = "viewer")]
     Play(play::Play),
@@ -74,6 +77,7 @@ impl Command {
             Command::Ablate(ablate) => ablate.run(),
             Command::Compare(compare) => compare.run(),
             Command::Eval(eval) => eval.run(),
+            Command::Tournament(tournament) => tournament.run(),
             #[cfg(feature = "viewer")]
             Command::Play(play) => play.run(),
             #[cfg(feature = "viewer")]

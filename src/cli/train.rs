@@ -105,7 +105,7 @@ pub struct Choices {
     /// Metres of one unit of BVH files, for simulated bodies [default: found from the length of the legs]
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     unit: Option<f32>,
-    /// Learn to steer the skills of a low level, for `punch` and `joystick`: a run of `skills`, or one of its
+    /// Learn to steer the skills of a low level, for `punch`, `joystick` and `box`: a run of `skills`, or one of its
     /// checkpoints; with --resume, where it is now
     #[arg(long, value_name = "RUN")]
     pub skills: Option<PathBuf>,

@@ -5,6 +5,7 @@ use super::spec::EnvSpec;
 use crate::container::{Section, SectionError};
 use crate::gpu::Array;
 use anyhow::Result;
+use std::any::Any;
 
 pub use crate::kernels::learn::rollout_moments::GROUPS;
 
@@ -28,8 +29,9 @@ pub struct Transition<'a> {
 }
 
 /// Environments that are stepped together, with same-step reset (Gymnasium's `SAME_STEP`): a step that
-/// ends an episode begins the next one, and the next observation is of that.
-pub trait VecEnv: Send {
+/// ends an episode begins the next one, and the next observation is of that. Being [`Any`], a batch's parts can be told
+/// apart by who learns in them.
+pub trait VecEnv: Any + Send {
     /// The dimensions of the batch.
     fn spec(&self) -> &EnvSpec;
 
@@ -52,6 +54,14 @@ pub trait VecEnv: Send {
     /// Writes the sums over all episodes that ended since the last call to `out`, in the order of
     /// [`VecEnv::stat_names`].
     fn stats(&mut self, out: &mut Array);
+
+    /// What each row would add to [`VecEnv::stats`] now, `[rows][stats]`; empty of environments that do not know.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn row_stats(&self) -> Result<Vec<f32>> {
+        Ok(Vec::new())
+    }
 
     /// Episodes that begin from now on are of this level of a [curriculum](super::curriculum).
     fn set_level(&mut self, _level: u32) {}

@@ -10,6 +10,8 @@ pub const SUCCESS: u32 = 1;
 pub const TRUNCATED: u32 = 2;
 /// The task has failed: a collision, a fall.
 pub const FAILED: u32 = 3;
+/// Added to how a step ends for a task: an agent whose episode would be won if it ended now.
+pub const LEADS: u32 = 4;
 /// The set of all of them; a set has the bit `1 << termination` for each.
 pub const ANY: u32 = u32::MAX;
 
@@ -18,4 +20,5 @@ const _: () = assert!(
         && wgsl::SUCCESS == SUCCESS
         && wgsl::TRUNCATED == TRUNCATED
         && wgsl::FAILED == FAILED
+        && wgsl::LEADS == LEADS
 );

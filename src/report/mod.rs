@@ -3,7 +3,8 @@
 //! The pictures share one look. [`png_file`] writes a PNG whole or not at all,
 //! [`canvas`] draws smooth lines and text into one, [`chart`] adds the colours and
 //! the axes, [`ground`] the view from above, and each of [`learning_curve`],
-//! [`ablation`], [`trajectories`], [`obstacle_walks`], [`coverage`] and [`scaling`] is one figure.
+//! [`ablation`], [`trajectories`], [`obstacle_walks`], [`coverage`], [`scaling`] and [`win_rates`] is one
+//! figure.
 //! None of them needs a display, a window system or an installed font.
 //!
 //! [`events`] writes what TensorBoard reads, and [`table`] what a terminal shows. Only tables are there
@@ -36,6 +37,8 @@ pub mod scaling;
 pub mod table;
 #[cfg(feature = "report")]
 pub mod trajectories;
+#[cfg(feature = "report")]
+pub mod win_rates;
 
 #[cfg(feature = "report")]
 pub use error::ReportError;

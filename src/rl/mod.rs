@@ -9,6 +9,8 @@ pub mod gae;
 pub mod ppo;
 pub mod rollout;
 pub mod sample_action;
+pub mod self_play;
+mod step_columns;
 pub mod task_weight;
 pub mod value_normalizer;
 

@@ -3,8 +3,8 @@
 use super::checkpoint::Checkpoint;
 use super::config::Config;
 use super::task::Task;
+use crate::env::VecEnv;
 use crate::env::humanoid::driver::{BodyDriver, DriverState};
-use crate::env::humanoid::recorded::observe;
 use crate::env::humanoid::task::CpuHumanoidEnv;
 use crate::env::humanoid::task::play::play_episodes;
 use crate::rl::amp::FrozenDiscriminator;
@@ -54,12 +54,9 @@ impl BodyPolicy {
     /// What the discriminator says of one episode of each environment; `None` without one.
     pub fn judged(&self, envs: &mut CpuHumanoidEnv) -> Option<StyleReport> {
         let discriminator = self.discriminator.as_ref()?;
-        let moment = |envs: &CpuHumanoidEnv, env: usize| {
-            let state = &envs.batch.worlds[env].state;
-            observe(envs.task().model(), &state.q, &state.v)
-        };
-        let count = envs.batch.worlds.len();
-        let mut before: Vec<Vec<f32>> = (0..count).map(|env| moment(envs, env)).collect();
+        let (count, own) = (envs.spec().rows(), envs.spec().style);
+        let moment = |envs: &CpuHumanoidEnv, row: usize| envs.seen(row)[..own].to_vec();
+        let mut before: Vec<Vec<f32>> = (0..count).map(|row| moment(envs, row)).collect();
         let (mut style, mut cosine, mut steps) = (0.0, None, 0usize);
         play_episodes(
             envs,
@@ -67,15 +64,15 @@ impl BodyPolicy {
             DriverState::default(),
             |envs, running, state| {
                 let dim = state.latents.len() / count;
-                for env in (0..count).filter(|&env| running[env]) {
-                    let (now, latent) = (moment(envs, env), &state.latents[env * dim..][..dim]);
-                    let moments = [&before[env][..], &now];
+                for row in (0..count).filter(|&row| running[row]) {
+                    let (now, latent) = (moment(envs, row), &state.latents[row * dim..][..dim]);
+                    let moments = [&before[row][..], &now];
                     style += f64::from(discriminator.reward(moments, latent));
                     if let Some(found) = discriminator.cosine(moments, latent) {
                         *cosine.get_or_insert(0.0) += f64::from(found);
                     }
                     steps += 1;
-                    before[env] = now;
+                    before[row] = now;
                 }
             },
         );

@@ -9,6 +9,7 @@ use crate::nn::network::NetworkError;
 use crate::rl::amp::{Amp, DiscriminatorLoss};
 use crate::rl::ase::Ase;
 use crate::rl::ppo::Ppo;
+use crate::rl::self_play::SelfPlay;
 use crate::rl::task_weight::{TaskWeightConfig, WeightRule};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -81,6 +82,9 @@ pub struct Config {
     /// Those of latents, for the task that has them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ase: Option<Ase>,
+    /// Those of self-play, for the task that is learned so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub self_play: Option<SelfPlay>,
     /// How the weights of the rewards of task and style are found, for tasks that have both.
     #[serde(skip_serializing_if = "is_default", default)]
     pub task_weight: TaskWeightConfig,
@@ -100,6 +104,8 @@ pub struct TaskPreset {
     pub amp: Option<Amp>,
     /// Those of latents, if the task has any.
     pub ase: Option<Ase>,
+    /// Those of self-play, if the task is learned so.
+    pub self_play: Option<SelfPlay>,
     /// Environment steps of a training.
     pub steps: u64,
 }
@@ -223,6 +229,7 @@ impl Config {
             ppo: chosen.ppo,
             amp: chosen.amp,
             ase: chosen.ase,
+            self_play: chosen.self_play,
             task_weight: TaskWeightConfig::default(),
         }
     }
@@ -418,6 +425,7 @@ impl Config {
         check_ppo(&self.ppo)?;
         self.amp.as_ref().map_or(Ok(()), check_amp)?;
         self.ase.as_ref().map_or(Ok(()), check_ase)?;
+        self.self_play.as_ref().map_or(Ok(()), check_self_play)?;
         self.check_task_weight()
     }
 
@@ -452,7 +460,15 @@ impl Config {
 }
 
 /// Keys that decide over what is learned.
-const DECISIVE: [&str; 6] = ["seed", "task", "ppo", "amp", "ase", "task_weight"];
+const DECISIVE: [&str; 7] = [
+    "seed",
+    "task",
+    "ppo",
+    "amp",
+    "ase",
+    "self_play",
+    "task_weight",
+];
 
 /// Bytes of the longest configuration.
 const MAX_BYTES: u64 = 1 << 24;
@@ -565,6 +581,14 @@ fn check_ase(ase: &Ase) -> Result<(), ConfigError> {
     within("ase.skill_weight", ase.skill_weight, 0.0, 1e3)?;
     within("ase.diversity", ase.diversity, 0.0, 1e3)?;
     within("ase.spread", ase.spread, 0.0, 10.0)
+}
+
+fn check_self_play(chosen: &SelfPlay) -> Result<(), ConfigError> {
+    within("self_play.pool", chosen.pool, 1, 64)?;
+    within("self_play.win_rate", chosen.win_rate, 0.0, 1.0)?;
+    within("self_play.games", chosen.games, 0, 1_000_000_000)?;
+    within("self_play.updates", chosen.updates, 0, 1_000_000_000)?;
+    within("self_play.decay", chosen.decay, 0.0, 1.0)
 }
 
 /// Writes `changes` over `table`, refusing keys that `table` does not know and values of another

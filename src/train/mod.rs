@@ -10,6 +10,7 @@ pub mod comparison;
 pub mod config;
 pub mod controller;
 pub mod data;
+pub mod elo;
 pub mod eval_report;
 pub mod evaluate;
 pub mod evaluation;
@@ -30,4 +31,5 @@ pub mod task;
 pub mod tasks;
 #[cfg(feature = "report")]
 pub mod tensorboard;
+pub mod tournament;
 pub mod trainer;

@@ -13,6 +13,7 @@ use super::locomotion::Locomotion;
 use super::metrics::UpdateMetrics;
 #[cfg(feature = "report")]
 use super::run_dir::RunDir;
+use super::tournament::Bouts;
 use crate::env::humanoid::driver::BodyDriver;
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
@@ -198,6 +199,11 @@ pub trait Task: Send + Sync {
 
     /// What `play` and `render` show of a simulated body.
     fn body(&self) -> Option<BodyEpisodes> {
+        None
+    }
+
+    /// What two policies of the task fight in, if they do.
+    fn bouts(&self) -> Option<Bouts> {
         None
     }
 }

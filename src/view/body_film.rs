@@ -12,12 +12,17 @@ use anyhow::Result;
 use glam::Vec3;
 use std::sync::Arc;
 
+/// How much further the camera is for each metre of the way from the middle to who is farthest.
+const WIDE: f32 = 1.4;
+
 /// A motion before a camera, a frame at a time.
 pub struct BodyFilm<'a> {
     model: &'a Arc<Model>,
     motion: &'a MotionClip,
     frame: usize,
     camera: Camera,
+    /// From the camera to a single body, m.
+    near: f32,
     renderer: Renderer,
     target: RenderTarget,
 }
@@ -35,6 +40,7 @@ impl<'a> BodyFilm<'a> {
             model,
             motion,
             frame: 0,
+            near: camera.distance,
             camera,
             renderer: Renderer::new(gpu),
             target: RenderTarget::new(&gpu.setup.device, size),
@@ -52,8 +58,10 @@ impl<'a> BodyFilm<'a> {
     }
 
     fn follow(&mut self, by: f32) {
-        let at = shapes::seen(Vec3::from_slice(self.motion.q(self.frame)));
+        let poses = shapes::poses(self.model, self.motion.q(self.frame));
+        let (at, side) = shapes::company(self.model, &poses);
         self.camera.follow([at.x, at.z], by);
+        self.camera.distance = self.near + WIDE * side;
     }
 
     /// The frame, RGB.

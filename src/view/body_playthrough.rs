@@ -100,6 +100,7 @@ pub struct BodyPlaythrough {
     pub wanted: Option<Vec<f32>>,
     /// The latents that somebody wants; `None` where they change as in training.
     pub path: Option<LatentPath>,
+    /// `[rows][observation]`
     observation: Vec<f32>,
     state: Section,
     driver: DriverState,
@@ -113,7 +114,9 @@ impl BodyPlaythrough {
     pub fn new(context: &mut BodyContext, episode: u32) -> Result<BodyPlaythrough> {
         context.env = context.episodes.open(episode);
         context.opened = episode;
-        context.env.episodes[0][LIMIT] = f32::MAX;
+        let agents = context.env.episodes.iter_mut();
+        agents.for_each(|episode| episode[LIMIT] = f32::MAX);
+        let rows = context.env.spec().rows();
         let mut first = BodyPlaythrough {
             episode,
             steps: 0,
@@ -125,7 +128,7 @@ impl BodyPlaythrough {
             reference: None,
             wanted: None,
             path: None,
-            observation: vec![0.0; context.env.spec().observation.dim()],
+            observation: vec![0.0; rows * context.env.spec().observation.dim()],
             state: Section::default(),
             driver: DriverState::default(),
         };

@@ -2,6 +2,7 @@
 
 use super::capsule_rig::{LEFT, RIGHT, TRUNK};
 use super::scene::{Colour, Cuboid, Scene};
+use crate::env::humanoid::task::{agent_bodies, agents};
 use crate::physics::kinematics::kinematics;
 use crate::physics::model::{Geom, GeomShape, Model};
 use crate::physics::pose::Pose;
@@ -31,6 +32,18 @@ pub fn poses(model: &Model, q: &[f32]) -> Vec<Pose> {
     let mut axes = vec![Spatial::ZERO; model.nv()];
     kinematics(model, q, &mut poses, &mut axes);
     poses
+}
+
+/// The point between the characters of a world, in the scene, and how far they are from it at most, m.
+pub fn company(model: &Model, poses: &[Pose]) -> (Vec3, f32) {
+    let roots = poses.iter().step_by(agent_bodies(model));
+    let roots: Vec<Vec3> = roots
+        .take(agents(model).max(1))
+        .map(|pose| seen(pose.position))
+        .collect();
+    let middle = roots.iter().sum::<Vec3>() / roots.len() as f32;
+    let apart = roots.iter().map(|root| root.distance(middle));
+    (middle, apart.fold(0.0, f32::max))
 }
 
 /// Whether a body is there, or shown for comparison.

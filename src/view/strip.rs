@@ -117,11 +117,8 @@ impl<'a> Strip<'a> {
             let recorded = self.recorded(motion, time);
             let mut scene = Scene::default();
             shapes::draw(&mut scene, self.model, &recorded, Vec3::ZERO, Look::Solid);
-            Shot {
-                scene,
-                focus: shapes::seen(recorded[0].position),
-                side: 0.0,
-            }
+            let (focus, side) = shapes::company(self.model, &recorded);
+            Shot { scene, focus, side }
         });
         shots.collect()
     }

@@ -145,7 +145,9 @@ impl BodyViewer {
 
     fn look_at_it(&mut self, fraction: f32) {
         if self.transport.follow {
-            let at = seen(Vec3::from_slice(&self.timeline.now().q));
+            let model = self.context.model();
+            let poses = shapes::poses(model, &self.timeline.now().q);
+            let (at, _) = shapes::company(model, &poses);
             self.camera.follow([at.x, at.z], fraction);
         }
     }

@@ -3,6 +3,7 @@
 #[cfg(target_os = "linux")]
 mod accidents;
 mod bench;
+mod boxing;
 #[cfg(unix)]
 mod damaged;
 mod data;

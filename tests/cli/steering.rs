@@ -12,7 +12,7 @@ const SMALL: &str = "--device cpu --envs 16 --set ppo.rollout_length=4 --set ppo
 
 impl Place {
     /// With a low level in the run folder `low`, of a body that observes so many numbers of itself.
-    fn with_low_level(style: usize) -> Place {
+    pub fn with_low_level(style: usize) -> Place {
         let place = Place::new();
         place.put_low_level(style, 1);
         place
@@ -28,7 +28,7 @@ impl Place {
             .unwrap();
     }
 
-    fn sections(&self, run: &str) -> footwork::container::Sections {
+    pub fn sections(&self, run: &str) -> footwork::container::Sections {
         let path = self.path(run).join("checkpoints/last.ckpt");
         Checkpoint::load(&path).unwrap().sections
     }

@@ -125,7 +125,7 @@ fn a_body_is_played_step_by_step_and_rewound() {
 
 #[test]
 fn what_a_moment_leads_to_is_the_same_every_time() {
-    for name in ["stand", "punch"] {
+    for name in ["stand", "punch", "box"] {
         let (config, task) = task(name);
         let policy = untrained(&config, &*task);
         let mut context = BodyContext::new(task.body().unwrap());
@@ -141,6 +141,16 @@ fn what_a_moment_leads_to_is_the_same_every_time() {
             assert_eq!(again.q, played[from + 1].q, "{name} {from}");
         }
     }
+}
+
+#[test]
+fn a_bout_is_watched() {
+    let mut harness = open("box");
+    harness.run_steps(6);
+    press(&mut harness, "Pause");
+    let moment = harness.state().timeline().now();
+    assert!(moment.steps > 0 && moment.style.is_some());
+    keep(&mut harness, "body-box");
 }
 
 #[test]

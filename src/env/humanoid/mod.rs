@@ -1,12 +1,13 @@
 //! Simulated humanoids: [`batch`] steps their physics, [`task`] plays a task on it. [`stand`] is to stay
 //! upright, [`imitate`] to move as recordings do, [`track`] to follow them moment
-//! by moment, [`punch`] to go up to a box and topple it.
+//! by moment, [`punch`] to go up to a box and topple it, [`boxing`] to fight another.
 //!
 //! [`action`] says what an action means, [`driver`] who acts, [`starts`] where episodes begin, [`recorded`] what
 //! recordings are to a task, and [`fidelity`] how motion compares with them.
 
 pub mod action;
 pub mod batch;
+pub mod boxing;
 pub mod driver;
 pub mod fidelity;
 pub mod imitate;

@@ -19,7 +19,7 @@ const STREAM: u32 = 0x4d4f_5449;
 /// Height of a start's feet above the ground, m: on it, rounding would decide whether they touch it.
 const CLEARANCE: f32 = 1e-3;
 
-/// What a body observes of itself, `[style]`, at positions `q` and velocities `v`.
+/// What a body, the first agent, observes of itself, `[style]`, at positions `q` and velocities `v`.
 pub fn observe(model: &Model, q: &[f32], v: &[f32]) -> Vec<f32> {
     let mut poses = vec![Pose::default(); model.bodies.len()];
     let mut axes = vec![Spatial::ZERO; model.nv()];
@@ -28,7 +28,8 @@ pub fn observe(model: &Model, q: &[f32], v: &[f32]) -> Vec<f32> {
     velocities(model, v, &axes, &mut speeds);
     let mut out = vec![0.0; proprioception::width(model, 0, KEY_BODIES.len())];
     let characters = characters(model);
-    proprioception::observe(model, q, v, &poses, &speeds, &characters[1..], &mut out);
+    let first = &characters[1..][..1 + KEY_BODIES.len()];
+    proprioception::observe(model, q, v, &poses, &speeds, first, &mut out);
     out
 }
 

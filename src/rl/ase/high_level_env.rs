@@ -6,7 +6,8 @@ use crate::container::{Section, SectionError};
 use crate::env::live_view::LiveView;
 use crate::env::{EnvSpec, Transition, VecEnv};
 use crate::gpu::{Array, Device};
-use crate::kernels::learn::{keep_first_end, style_windows, sum_decision};
+use crate::kernels::learn::style_windows;
+use crate::rl::step_columns::StepColumns;
 use anyhow::Result;
 
 /// Environments of a body whose agents act through a frozen low level: an action is a direction on its sphere of
@@ -30,38 +31,6 @@ pub struct HighLevelEnv {
     /// The moments before and after the present step, `[rows][2 style]`.
     windows: Array,
     step: StepColumns,
-}
-
-/// What one step of the inner environments leaves, `[rows]`; of its final observations `[rows][observation]`.
-struct StepColumns {
-    reward: Array,
-    style_reward: Array,
-    termination: Array<u32>,
-    group: Array<u32>,
-    final_observation: Array,
-}
-
-impl StepColumns {
-    fn new(device: &Device, rows: usize, observation: usize) -> Self {
-        StepColumns {
-            reward: Array::zeroed(device, rows),
-            style_reward: Array::zeroed(device, rows),
-            termination: Array::zeroed(device, rows),
-            group: Array::zeroed(device, rows),
-            final_observation: Array::zeroed(device, rows * observation),
-        }
-    }
-
-    fn transition(&mut self) -> Transition<'_> {
-        Transition {
-            step: 0,
-            reward: &mut self.reward,
-            style_reward: &mut self.style_reward,
-            termination: &mut self.termination,
-            group: &mut self.group,
-            final_observation: &mut self.final_observation,
-        }
-    }
 }
 
 impl HighLevelEnv {
@@ -130,73 +99,6 @@ impl HighLevelEnv {
             ),
         }
     }
-
-    /// Takes the step of this number into the decision.
-    fn count(&self, step: usize, decision: &mut Transition) {
-        self.keep_first_end(step, decision);
-        let params = sum_decision::Params {
-            rows: self.spec.rows() as u32,
-            at: (decision.step * self.spec.rows()) as u32,
-            step: step as u32,
-            reward_share: 1.0 / STEPS_PER_DECISION as f32,
-        };
-        let own = &self.step;
-        match &self.device {
-            Device::Cpu => sum_decision::twin(
-                own.reward.host(),
-                own.style_reward.host(),
-                own.termination.host(),
-                own.group.host(),
-                decision.reward.host_mut(),
-                decision.style_reward.host_mut(),
-                decision.termination.host_mut(),
-                decision.group.host_mut(),
-                &params,
-            ),
-            Device::Gpu(gpu) => sum_decision::launch(
-                gpu,
-                own.reward.buffer(),
-                own.style_reward.buffer(),
-                own.termination.buffer(),
-                own.group.buffer(),
-                decision.reward.buffer(),
-                decision.style_reward.buffer(),
-                decision.termination.buffer(),
-                decision.group.buffer(),
-                &params,
-            ),
-        }
-    }
-
-    /// Keeps the final observations of the decision's first ends.
-    fn keep_first_end(&self, step: usize, decision: &mut Transition) {
-        let observation = self.spec.observation.dim();
-        let params = keep_first_end::Params {
-            rows: self.spec.rows() as u32,
-            observation: observation as u32,
-            at: (decision.step * self.spec.rows()) as u32,
-            final_at: (self.spec.final_row(decision.step) * observation) as u32,
-            step: step as u32,
-        };
-        let own = &self.step;
-        match &self.device {
-            Device::Cpu => keep_first_end::twin(
-                own.termination.host(),
-                decision.termination.host(),
-                own.final_observation.host(),
-                decision.final_observation.host_mut(),
-                &params,
-            ),
-            Device::Gpu(gpu) => keep_first_end::launch(
-                gpu,
-                own.termination.buffer(),
-                decision.termination.buffer(),
-                own.final_observation.buffer(),
-                decision.final_observation.buffer(),
-                &params,
-            ),
-        }
-    }
 }
 
 impl VecEnv for HighLevelEnv {
@@ -212,7 +114,8 @@ impl VecEnv for HighLevelEnv {
         self.inner.observe(&mut self.before, 0);
         for step in 0..STEPS_PER_DECISION {
             self.play(action, at);
-            self.count(step, &mut out);
+            let share = 1.0 / STEPS_PER_DECISION as f32;
+            self.step.count(&self.device, &self.spec, step, share, &mut out);
             std::mem::swap(&mut self.before, &mut self.after);
         }
     }
@@ -223,6 +126,10 @@ impl VecEnv for HighLevelEnv {
 
     fn stats(&mut self, out: &mut Array) {
         self.inner.stats(out);
+    }
+
+    fn row_stats(&self) -> Result<Vec<f32>> {
+        self.inner.row_stats()
     }
 
     fn set_level(&mut self, level: u32) {

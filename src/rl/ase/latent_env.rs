@@ -172,6 +172,10 @@ impl VecEnv for LatentEnv {
         self.inner.stats(out);
     }
 
+    fn row_stats(&self) -> Result<Vec<f32>> {
+        self.inner.row_stats()
+    }
+
     fn set_level(&mut self, level: u32) {
         self.inner.set_level(level);
     }

@@ -6,7 +6,8 @@
 //! bodies on the host.
 //!
 //! When learning is over a [`FrozenLowLevel`] is left, whose skills a high-level policy may steer: [`HighLevelEnv`]
-//! makes environments of a body into environments of latents, and a [`HighLevelDriver`] moves bodies on the host.
+//! makes environments of a body into environments of latents, and a [`HighLevelDriver`] moves bodies on the host, a
+//! [`SteadyDriver`] those whom nobody steers.
 
 mod batch_low_level;
 mod frozen_low_level;
@@ -15,6 +16,7 @@ mod high_level_env;
 mod latent_draw;
 mod latent_driver;
 mod latent_env;
+mod steady_driver;
 
 use super::amp::{LatentUse, SkillRewards};
 pub use frozen_low_level::FrozenLowLevel;
@@ -23,6 +25,7 @@ pub use high_level_env::HighLevelEnv;
 pub use latent_draw::LatentDraw;
 pub use latent_driver::LatentDriver;
 pub use latent_env::LatentEnv;
+pub use steady_driver::SteadyDriver;
 use serde::{Deserialize, Serialize};
 
 /// Steps of the low level that a decision of a high level lasts.

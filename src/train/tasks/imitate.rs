@@ -33,6 +33,7 @@ fn preset(preset: Preset) -> TaskPreset {
         ppo: styled(preset),
         amp: Some(discriminator(preset)),
         ase: None,
+        self_play: None,
         steps: 2_500_000,
     }
 }
@@ -81,7 +82,7 @@ impl MotionTask for Imitate {
     fn evaluate(
         task: Arc<ImitateTask>,
         _library: &MotionLibrary,
-        driver: &dyn BodyDriver,
+        [driver, _]: [&dyn BodyDriver; 2],
         episodes: usize,
         seed: u32,
     ) -> FidelityReport {

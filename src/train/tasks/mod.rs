@@ -1,5 +1,6 @@
 //! The tasks, a file each, and the one list of them.
 
+pub mod boxing;
 pub mod imitate;
 mod motion_training;
 mod motions;
@@ -16,7 +17,7 @@ use super::run_dir::RunDir;
 use super::task::TaskEntry;
 
 /// Every task there is.
-pub static REGISTRY: [TaskEntry; 8] = [
+pub static REGISTRY: [TaskEntry; 9] = [
     plane::ENTRY,
     obstacles::ENTRY,
     stand::ENTRY,
@@ -25,6 +26,7 @@ pub static REGISTRY: [TaskEntry; 8] = [
     punch::PUNCH,
     punch::JOYSTICK,
     skills::ENTRY,
+    boxing::ENTRY,
 ];
 
 /// A task by name.

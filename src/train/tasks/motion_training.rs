@@ -2,9 +2,11 @@
 //! [`MotionTask`].
 
 use super::motions;
-use crate::env::EnvBatch;
+use crate::env::humanoid::boxing::BoxingTask;
+use crate::env::humanoid::boxing::corners::Standing;
 use crate::env::humanoid::driver::BodyDriver;
-use crate::env::humanoid::task::{HumanoidTask, open};
+use crate::env::humanoid::task::{HumanoidTask, open, spec};
+use crate::env::{EnvBatch, VecEnv};
 use crate::gpu::Device;
 use crate::nn::Policy;
 use crate::physics::model::Model;
@@ -13,13 +15,16 @@ use crate::rl::Algorithm;
 use crate::rl::amp::SkillRewards;
 use crate::rl::ase::{
     FrozenLowLevel, HighLevelDriver, HighLevelEnv, LatentDraw, LatentDriver, LatentEnv,
+    SteadyDriver,
 };
+use crate::rl::self_play::{SelfPlay, SelfPlayEnv, SelfPlayLearner};
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::fingerprint::Fingerprint;
 use crate::train::low_level;
 use crate::train::task::{Loaded, Task, ppo_learner};
+use crate::train::tournament::Bouts;
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
@@ -35,6 +40,10 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
 
     /// What the performer does where no recordings are given.
     const PERFORMANCE: motions::Performance;
+    /// Most episodes of an evaluation in a training.
+    const MOST_EPISODES: usize = usize::MAX;
+    /// Names of metrics that are fractions of the episodes' steps, and of the statistics that count these steps.
+    const STEP_FRACTIONS: &'static [(&'static str, &'static str)] = &[];
 
     /// The choices of a configuration.
     ///
@@ -63,11 +72,22 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
         SkillRewards::default()
     }
 
-    /// Plays `episodes` episodes, whose starts depend on `seed` alone.
+    /// How it is learned by self-play, if it is: its environments are then of two agents.
+    fn self_play(&self) -> Option<&SelfPlay> {
+        None
+    }
+
+    /// What two policies fight in, if they do.
+    fn bouts(_: Arc<Self::Played>) -> Option<Arc<BoxingTask>> {
+        None
+    }
+
+    /// Plays `episodes` episodes, whose starts depend on `seed` alone, under the policy's driver; one who does nothing is
+    /// there, too, to compare with or to play against.
     fn evaluate(
         task: Arc<Self::Played>,
         library: &MotionLibrary,
-        driver: &dyn BodyDriver,
+        drivers: [&dyn BodyDriver; 2],
         episodes: usize,
         seed: u32,
     ) -> Self::Report;
@@ -112,8 +132,18 @@ pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
 impl<T: MotionTask> MotionTraining<T> {
     fn rate(&self, policy: &Policy, episodes: usize) -> T::Report {
         let task = self.task.judged(&self.library, EPISODES_SEED);
-        let driver = self.driver(policy);
-        T::evaluate(task, &self.library, &*driver, episodes, EPISODES_SEED)
+        let (driver, still) = (self.driver(policy), self.still(&*task));
+        let drivers = [&*driver, &*still];
+        T::evaluate(task, &self.library, drivers, episodes, EPISODES_SEED)
+    }
+
+    /// A driver that does nothing: it holds the pose at rest or, over a low level, one latent.
+    fn still(&self, task: &dyn HumanoidTask) -> Box<dyn BodyDriver> {
+        let observation = spec(task.model(), task.observation(), 1).observation.dim();
+        match &self.low_level {
+            Some(low_level) => Box::new(SteadyDriver::new(low_level, observation)),
+            None => Box::new(Standing::new(task.rest_action(), observation)),
+        }
     }
 }
 
@@ -152,10 +182,14 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         EnvBatch::open(device, envs, None, |part| {
             let first = part.start;
             let body = open(device, task.clone(), part, seed)?;
-            Ok(match (&self.low_level, &latents) {
+            let acting: Box<dyn VecEnv> = match (&self.low_level, &latents) {
                 (Some(low_level), _) => Box::new(HighLevelEnv::new(body, low_level, device)?),
                 (None, Some(draw)) => Box::new(LatentEnv::new(body, draw, device, first, seed)),
                 (None, None) => body,
+            };
+            Ok(match self.task.self_play() {
+                Some(_) => Box::new(SelfPlayEnv::new(acting, device, first, seed)?),
+                None => acting,
             })
         })
     }
@@ -166,16 +200,22 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         envs: &EnvBatch,
         device: &Device,
     ) -> Result<Box<dyn Algorithm>> {
-        match (&self.low_level, &config.amp) {
-            (Some(_), _) => motions::steering_learner(config, envs, device),
+        let learner = match (&self.low_level, &config.amp) {
+            (Some(_), _) => motions::steering_learner(config, envs, device)?,
             (None, Some(amp)) => {
                 let (skills, latents) =
                     (self.task.skill_rewards(), self.task.latents(&self.library));
                 let latents = latents.as_ref();
-                motions::learner(config, amp, &skills, latents, &self.library, envs, device)
+                motions::learner(config, amp, &skills, latents, &self.library, envs, device)?
             }
-            (None, None) => ppo_learner(config, envs, device),
-        }
+            (None, None) => ppo_learner(config, envs, device)?,
+        };
+        let Some(self_play) = self.task.self_play() else {
+            return Ok(learner);
+        };
+        let (steps, fractions) = (config.ppo.rollout_length, T::STEP_FRACTIONS);
+        let learner = SelfPlayLearner::new(learner, self_play, envs, steps, fractions)?;
+        Ok(Box::new(learner))
     }
 
     fn driver(&self, policy: &Policy) -> Box<dyn BodyDriver> {
@@ -194,6 +234,7 @@ impl<T: MotionTask> Task for MotionTraining<T> {
     }
 
     fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {
+        let episodes = episodes.min(T::MOST_EPISODES);
         Ok(T::evaluation(&self.rate(policy, episodes)))
     }
 
@@ -209,6 +250,12 @@ impl<T: MotionTask> Task for MotionTraining<T> {
             text: format!("{sentence}\n{}", T::details(&found)),
             json: serde_json::to_value(found)?,
         })
+    }
+
+    fn bouts(&self) -> Option<Bouts> {
+        let task = T::bouts(self.task.judged(&self.library, EPISODES_SEED))?;
+        let still = self.still(&*task);
+        Some(Bouts { task, still })
     }
 
     #[cfg(feature = "report")]

@@ -39,6 +39,7 @@ fn preset(preset: Preset) -> TaskPreset {
         ppo,
         amp: None,
         ase: None,
+        self_play: None,
         steps: 6_000_000,
     }
 }

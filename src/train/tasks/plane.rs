@@ -40,6 +40,7 @@ fn preset(preset: Preset) -> TaskPreset {
         },
         amp: None,
         ase: None,
+        self_play: None,
         steps: 1_000_000,
     }
 }

@@ -106,6 +106,7 @@ fn preset(chosen: Preset, punch: Punch) -> TaskPreset {
             ..discriminator(chosen)
         }),
         ase: None,
+        self_play: None,
         steps: 10_000_000,
     }
 }
@@ -116,6 +117,7 @@ fn steering_preset(chosen: Preset, punch: Punch) -> TaskPreset {
         ppo: steering(chosen),
         amp: None,
         ase: None,
+        self_play: None,
         steps: 2_000_000,
     }
 }
@@ -163,7 +165,7 @@ impl MotionTask for TargetTask {
     fn evaluate(
         task: Arc<PunchTask>,
         library: &MotionLibrary,
-        driver: &dyn BodyDriver,
+        [driver, _]: [&dyn BodyDriver; 2],
         episodes: usize,
         seed: u32,
     ) -> PunchReport {

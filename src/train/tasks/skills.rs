@@ -46,6 +46,7 @@ fn preset(preset: Preset) -> TaskPreset {
             latent,
             ..Ase::default()
         }),
+        self_play: None,
         steps: 20_000_000,
     }
 }
@@ -102,7 +103,7 @@ impl MotionTask for Skills {
     fn evaluate(
         task: Arc<ImitateTask>,
         library: &MotionLibrary,
-        driver: &dyn BodyDriver,
+        [driver, _]: [&dyn BodyDriver; 2],
         episodes: usize,
         seed: u32,
     ) -> SkillReport {

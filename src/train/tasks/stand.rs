@@ -60,6 +60,7 @@ fn preset(_: Preset) -> TaskPreset {
         },
         amp: None,
         ase: None,
+        self_play: None,
         steps: 2_300_000,
     }
 }

@@ -34,6 +34,7 @@ fn preset(preset: Preset) -> TaskPreset {
         ppo: styled(preset),
         amp: None,
         ase: None,
+        self_play: None,
         steps: 2_500_000,
     }
 }
@@ -66,7 +67,7 @@ impl MotionTask for Tracking {
     fn evaluate(
         task: Arc<TrackTask>,
         _library: &MotionLibrary,
-        driver: &dyn BodyDriver,
+        [driver, _]: [&dyn BodyDriver; 2],
         episodes: usize,
         seed: u32,
     ) -> TrackReport {

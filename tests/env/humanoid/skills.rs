@@ -5,6 +5,7 @@
 use crate::support::inputs::{Draw, POISON, close, gpu, same};
 use crate::support::low_level::{LATENT, checkpoint};
 use footwork::container::Section;
+use footwork::env::humanoid::boxing::{Boxing, BoxingTask};
 use footwork::env::humanoid::driver::{BodyDriver, DriverState};
 use footwork::env::humanoid::punch::{Punch, PunchTask};
 use footwork::env::humanoid::task::play::DrivenStep;
@@ -58,6 +59,19 @@ fn task(episode_s: f32) -> Arc<PunchTask> {
 
 fn bodies(device: &Device, envs: Range<usize>, episode_s: f32) -> Box<dyn VecEnv> {
     open(device, task(episode_s), envs, 3).unwrap()
+}
+
+/// Rows of fighters, two an environment.
+fn fighters(rows: Range<usize>, episode_s: f32) -> Box<dyn VecEnv> {
+    let boxing = Boxing {
+        rules: EpisodeRules {
+            episode_s,
+            ..EpisodeRules::default()
+        },
+        ..Boxing::default()
+    };
+    let task = Arc::new(BoxingTask::new(&boxing, &LIBRARY, 3));
+    open(&Device::Cpu, task, rows.start / 2..rows.end / 2, 3).unwrap()
 }
 
 fn steered(device: &Device, envs: Range<usize>, episode_s: f32) -> HighLevelEnv {
@@ -150,12 +164,19 @@ fn its_dimensions_are_those_of_latents() {
 /// A decision is what its steps come to up to the first end, and its final observation is that of the end.
 #[test]
 fn decisions_are_five_steps_of_the_low_level() {
-    for low_level in LOW_LEVELS.iter() {
+    let alone = || bodies(&Device::Cpu, 5..5 + ROWS, 0.3);
+    let in_pairs = || fighters(6..6 + ROWS, 0.3);
+    let cases: [(&Arc<FrozenLowLevel>, &dyn Fn() -> Box<dyn VecEnv>); 3] = [
+        (&LOW_LEVELS[0], &alone),
+        (&LOW_LEVELS[1], &alone),
+        (&LOW_LEVELS[1], &in_pairs),
+    ];
+    for (low_level, open) in cases {
         let mut hand = ByHand {
-            inner: bodies(&Device::Cpu, 5..5 + ROWS, 0.3),
+            inner: open(),
             low_level,
         };
-        let inner = bodies(&Device::Cpu, 5..5 + ROWS, 0.3);
+        let inner = open();
         let mut envs = HighLevelEnv::new(inner, low_level, &Device::Cpu).unwrap();
         let mut got = Columns::new(&Device::Cpu, &envs, 4);
         let mut found = Vec::new();

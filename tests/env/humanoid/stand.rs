@@ -12,7 +12,7 @@ use footwork::env::humanoid::task::play::record;
 use footwork::env::humanoid::task::{CpuHumanoidEnv, EpisodeRules, open};
 use footwork::env::{EnvBatch, Stats, Transition, VecEnv, termination};
 use footwork::gpu::{Array, Device};
-use footwork::kernels::humanoid::end_episode::{self, has_fallen};
+use footwork::kernels::humanoid::fallen::{FallRules, has_fallen};
 use footwork::kernels::humanoid::stand_reward::{stillness, uprightness};
 use footwork::physics::kinematics::kinematics;
 use footwork::physics::pose::Pose;
@@ -334,21 +334,19 @@ fn reward_terms_of_simple_cases() {
 fn a_body_has_fallen_when_a_part_is_low() {
     let model = scenes::humanoid();
     let index = |name: &str| model.body(name).unwrap() as u32;
-    let params = end_episode::Params {
+    let rules = FallRules {
         bodies: model.bodies.len() as u32,
         head: index("head"),
         pelvis: index("pelvis"),
-        right_foot: index("right_foot"),
-        left_foot: index("left_foot"),
+        feet: ["right_foot", "left_foot"].map(index),
         min_head: 0.9,
         min_pelvis: 0.5,
         min_body: 0.15,
-        ..bytemuck::Zeroable::zeroed()
     };
     let mut poses = vec![Pose::default(); model.bodies.len()];
     let mut axes = vec![Spatial::ZERO; model.nv()];
     kinematics(&model, &model.qpos0, &mut poses, &mut axes);
-    assert!(!has_fallen(&poses, &params));
+    assert!(!has_fallen(&poses, &rules));
     for (name, height, fallen) in [
         ("head", 0.91, false),
         ("head", 0.89, true),
@@ -361,7 +359,7 @@ fn a_body_has_fallen_when_a_part_is_low() {
     ] {
         let mut poses = poses.clone();
         poses[index(name) as usize].position = Vec3::Z * height;
-        assert_eq!(has_fallen(&poses, &params), fallen, "{name} at {height} m");
+        assert_eq!(has_fallen(&poses, &rules), fallen, "{name} at {height} m");
     }
 }
 

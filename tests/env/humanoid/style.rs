@@ -1,9 +1,10 @@
-//! The tasks `imitate`, `punch`, `joystick` and `track`.
+//! The tasks `imitate`, `punch`, `joystick`, `track` and `box`.
 //! Oracle: the same environments on the other device, or from a saved state; recorded motion. Bar: equal bit
 //! for bit on one device; between devices what the physics' rounding grows to.
 
 use crate::support::inputs::{Draw, POISON, gpu};
 use footwork::container::Section;
+use footwork::env::humanoid::boxing::{Boxing, BoxingTask};
 use footwork::env::humanoid::imitate::ImitateTask;
 use footwork::env::humanoid::punch::{Punch, PunchTask};
 use footwork::env::humanoid::recorded::{demonstrations, observe};
@@ -18,14 +19,14 @@ use footwork::rl::amp::{Amp, Discriminator, DiscriminatorLoss, FrozenDiscriminat
 use footwork::rl::rollout::Rollout;
 use std::sync::{Arc, LazyLock};
 
-static LIBRARY: LazyLock<Arc<MotionLibrary>> = LazyLock::new(|| {
+pub static LIBRARY: LazyLock<Arc<MotionLibrary>> = LazyLock::new(|| {
     let model = Arc::new(scenes::humanoid());
     let (mut clips, roles) = perform_walk(1, 6.0, 1.2);
     clips.extend(perform_boxing(1, 0.4).0);
     Arc::new(MotionLibrary::of(&clips, &roles, &model).expect("the performer fits the body"))
 });
 
-fn rules(episode_s: f32) -> EpisodeRules {
+pub fn rules(episode_s: f32) -> EpisodeRules {
     EpisodeRules {
         episode_s,
         ..EpisodeRules::default()
@@ -33,7 +34,7 @@ fn rules(episode_s: f32) -> EpisodeRules {
 }
 
 /// The tasks, with episodes of so many seconds.
-fn tasks(episode_s: f32) -> [Arc<dyn HumanoidTask>; 4] {
+fn tasks(episode_s: f32) -> [Arc<dyn HumanoidTask>; 5] {
     let punch = Punch {
         rules: rules(episode_s),
         after_hit_s: 0.2,
@@ -43,11 +44,16 @@ fn tasks(episode_s: f32) -> [Arc<dyn HumanoidTask>; 4] {
         rules: rules(episode_s),
         ..Tracking::default()
     };
+    let boxing = Boxing {
+        rules: rules(episode_s),
+        ..Boxing::default()
+    };
     [
         Arc::new(ImitateTask::new(&rules(episode_s), &LIBRARY, 3)),
         Arc::new(PunchTask::new(&punch, false, &LIBRARY, 3)),
         Arc::new(PunchTask::new(&punch, true, &LIBRARY, 3)),
         Arc::new(TrackTask::new(&track, &LIBRARY, 3)),
+        Arc::new(BoxingTask::new(&boxing, &LIBRARY, 3)),
     ]
 }
 
@@ -90,7 +96,7 @@ pub fn play(device: &Device, envs: &mut dyn VecEnv, steps: usize, seed: u32) -> 
         let out = Transition {
             step,
             reward: &mut reward,
-            style_reward: &mut Array::zeroed(device, 1),
+            style_reward: &mut Array::zeroed(device, steps * rows),
             termination: &mut ends,
             group: &mut groups,
             final_observation: &mut finals,
@@ -251,7 +257,7 @@ fn a_frozen_discriminator_rewards_as_it_did() {
 /// A box that has been put elsewhere is as one that always stood there.
 #[test]
 fn a_moved_target_stands_where_it_was_put() {
-    let [_, _, joystick, _] = tasks(10.0);
+    let [_, _, joystick, ..] = tasks(10.0);
     let mut envs = CpuHumanoidEnv::unstaggered(joystick, 0..2, 4);
     let rest = Array::Host(envs.rest_action().repeat(2));
     let still = envs.batch.worlds[0].state.q.clone();

@@ -2,6 +2,7 @@
 //! Oracle: the twins, which are what the CPU plays with. Bar: what is drawn or counted equal bit for bit;
 //! else a few roundings.
 
+mod boxing;
 mod punch;
 mod track;
 
@@ -11,7 +12,7 @@ use footwork::kernels::humanoid::{
     action_targets, draw_starts, end_episode, episode_sums, random_pushes, stand_reward,
 };
 use footwork::kernels::physics::smooth_dynamics::POSE_DIM;
-use footwork::kernels::termination::{FAILED, RUNNING, SUCCESS, TRUNCATED};
+use footwork::kernels::termination::{FAILED, LEADS, RUNNING, SUCCESS, TRUNCATED};
 
 #[test]
 fn action_targets_agree() {
@@ -91,23 +92,35 @@ fn pushes_agree_and_come_every_one_to_two_seconds() {
 fn starts_agree() {
     let mut draw = Draw::new(2);
     for envs in SIZES {
-        let (count, width) = (10, 7);
+        let (count, positions, velocities, agents) = (10, 4, 3, 1 + envs % 2);
+        let width = positions + velocities;
         let params = draw_starts::Params {
             envs: envs as u32,
+            agents: agents as u32,
             first: 3,
             seed: 4,
             reset_counter: 9,
             count: count as u32,
-            width: width as u32,
+            positions: positions as u32,
+            velocities: velocities as u32,
         };
         let mask: Vec<u32> = (0..envs as u32).map(|env| env % 3).collect();
         let states = draw.normals(count * width);
-        let forms = forms!(draw_starts, DRAW_STARTS, envs, params; mask, states, out width * envs);
+        let forms =
+            forms!(draw_starts, DRAW_STARTS, envs, params; mask, states, out agents * width * envs);
         for (form, starts) in forms.shaders() {
             same(form, starts, &forms.twin);
         }
         for env in 0..envs {
             assert_eq!(forms.twin[env] == POISON, env % 3 == 0);
+            for agent in (0..agents).filter(|_| env % 3 > 0) {
+                let q = (0..positions).map(|k| agent * positions + k);
+                let v = (0..velocities).map(|k| agents * positions + agent * velocities + k);
+                let fields = q.chain(v).map(|field| forms.twin[field * envs + env]);
+                let drawn: Vec<f32> = fields.collect();
+                let mut all = states.chunks_exact(width);
+                assert!(all.any(|state| state == drawn), "agent {agent} of {env}");
+            }
         }
     }
 }
@@ -162,9 +175,10 @@ fn stand_reward_agrees() {
     }
 }
 
-fn end_params(envs: usize, measures: usize) -> end_episode::Params {
+fn end_params(envs: usize, agents: usize, measures: usize) -> end_episode::Params {
     end_episode::Params {
         envs: envs as u32,
+        agents: agents as u32,
         at: 4,
         nq: 12,
         nv: 11,
@@ -176,6 +190,7 @@ fn end_params(envs: usize, measures: usize) -> end_episode::Params {
         measures: measures as u32,
         max_steps: 300,
         successes: 1 << SUCCESS | 1 << TRUNCATED,
+        falls_end: agents as u32 % 2,
         min_head: 0.9,
         min_pelvis: 0.5,
         min_body: 0.15,
@@ -186,34 +201,38 @@ fn end_params(envs: usize, measures: usize) -> end_episode::Params {
 #[test]
 fn ends_agree() {
     let mut draw = Draw::new(5);
-    for (envs, measures) in SIZES.into_iter().zip([0, 1, 2, 5].into_iter().cycle()) {
-        let params = end_params(envs, measures);
+    let cases = SIZES.into_iter().zip([0, 1, 2, 5].into_iter().cycle());
+    for ((envs, measures), agents) in cases.flat_map(|case| [(case, 1), (case, 2)]) {
+        let (params, rows) = (end_params(envs, agents, measures), envs * agents);
         let mut state = draw.normals(23 * envs);
         // Some diverge.
         for env in (0..envs).step_by(7) {
             let worst = [f32::NAN, f32::INFINITY, 1e4][env % 3];
             state[(12 + env % 11) * envs + env] = worst;
         }
-        let mut poses = draw.normals(6 * POSE_DIM * envs);
-        for body in 0..6 {
+        let mut poses = draw.normals(11 * POSE_DIM * envs);
+        for body in 0..11 {
             for env in 0..envs {
                 // Most stand.
                 poses[(POSE_DIM * body + 2) * envs + env] = 1.2 + 0.3 * draw.normal();
             }
         }
-        let task_end: Vec<u32> = (0..envs).map(|env| u32::from(env % 6 == 5)).collect();
-        let mut episode = draw.normals(fields(measures) * envs);
-        for env in 0..envs {
+        let leads = |row: usize| LEADS * u32::from(row % 4 == 3);
+        let task_end: Vec<u32> = (0..rows)
+            .map(|row| u32::from(row / agents % 6 == 5) + leads(row))
+            .collect();
+        let mut episode = draw.normals(fields(measures) * rows);
+        for row in 0..rows {
             // Step and limit.
-            episode[env] = (env % 5) as f32;
-            episode[envs + env] = 4.0;
+            episode[row] = (row / agents % 5) as f32;
+            episode[rows + row] = 4.0;
         }
-        let reward = draw.normals(4 + envs);
-        let measured = draw.normals(measures.max(1) * envs);
+        let reward = draw.normals(4 + rows);
+        let measured = draw.normals(measures.max(1) * rows);
         let forms = forms!(
             end_episode, END_EPISODE, envs, params;
             state, poses, measured, task_end, mut episode, mut reward,
-            mut vec![9u32; 4 + envs], out envs
+            mut vec![9u32; 4 + rows], out envs
         );
         let twin: &(Vec<f32>, Vec<f32>, Vec<u32>, Vec<u32>) = &forms.twin;
         for (form, got) in forms.shaders() {
@@ -221,9 +240,11 @@ fn ends_agree() {
             same(form, &got.1, &twin.1);
             assert_eq!((&got.2, &got.3), (&twin.2, &twin.3), "{form}");
         }
-        assert_eq!(twin.2[4..], twin.3);
-        for env in (0..envs).step_by(7) {
-            assert_eq!((twin.1[4 + env], twin.3[env]), (0.0, FAILED));
+        for row in 0..rows {
+            assert_eq!(twin.2[4 + row], twin.3[row / agents]);
+            if row / agents % 7 == 0 {
+                assert_eq!((twin.1[4 + row], twin.2[4 + row]), (0.0, FAILED));
+            }
         }
         if envs == 1000 {
             for end in [RUNNING, SUCCESS, TRUNCATED, FAILED] {

@@ -212,11 +212,13 @@ impl HumanoidTask for PunchTask {
 
     fn reward(
         &self,
+        _moment: &StepContext,
         simulator: &Simulator,
         world: &SimulatedWorld,
         state: &mut [f32],
+        outcomes: &mut [StepOutcome],
         measures: &mut [f32],
-    ) -> StepOutcome {
+    ) {
         let bodies = punch_reward::Bodies {
             poses: &simulator.poses,
             velocities: &simulator.velocities,
@@ -224,7 +226,7 @@ impl HumanoidTask for PunchTask {
         };
         let (reward, end, group) =
             punch_reward::step(&bodies, state, measures, &self.params.reward);
-        StepOutcome { reward, end, group }
+        outcomes[0] = StepOutcome { reward, end, group };
     }
 
     fn begin(&self, env: usize, moment: &StepContext, start: &mut [f32], state: &mut [f32]) {
@@ -237,6 +239,7 @@ impl HumanoidTask for PunchTask {
 
     fn observe(
         &self,
+        _agent: usize,
         simulator: &Simulator,
         _world: &SimulatedWorld,
         state: &[f32],

@@ -161,18 +161,17 @@ impl HumanoidTask for StandTask {
 
     fn reward(
         &self,
+        _moment: &StepContext,
         simulator: &Simulator,
         world: &SimulatedWorld,
         _state: &mut [f32],
+        outcomes: &mut [StepOutcome],
         measures: &mut [f32],
-    ) -> StepOutcome {
+    ) {
         let params = &self.params.reward;
         let torso = simulator.poses[params.torso as usize].rotation;
         measures[0] = stand_reward::uprightness(torso);
-        StepOutcome {
-            reward: stand_reward::reward(measures[0], &world.state.v, params),
-            ..StepOutcome::default()
-        }
+        outcomes[0].reward = stand_reward::reward(measures[0], &world.state.v, params);
     }
 
     fn on_gpu(&self, _: &Gpu) -> Box<dyn GpuHumanoidTask> {

@@ -9,7 +9,7 @@ use crate::kernels::humanoid::{action_targets, draw_starts, end_episode};
 use crate::kernels::physics::proprioception;
 use crate::kernels::rng::{index_below, random4};
 use crate::kernels::termination::{SUCCESS, TRUNCATED};
-use crate::physics::model::Model;
+use crate::physics::model::{Body, KinematicTree, Model};
 use crate::physics::simulator::SolverOptions;
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,29 +20,60 @@ pub const KEY_BODIES: [&str; 4] = ["right_hand", "left_hand", "right_foot", "lef
 /// Stream of the lengths of first episodes.
 const STREAM: u32 = 0x4147_4553;
 
-/// The dimensions of `envs` environments of a task that adds so many numbers to the observation of the
-/// body, the first tree of the model.
+/// The dimensions of `envs` environments of a task that adds so many numbers to the observation of a
+/// body.
 pub fn spec(model: &Model, task_observation: usize, envs: usize) -> EnvSpec {
     let body = proprioception::width(model, 0, KEY_BODIES.len());
+    let agents = agents(model);
     EnvSpec {
         envs,
-        agents: 1,
+        agents,
         observation: ObservationSpec {
             vector: body + task_observation,
             grid: None,
         },
         style: body,
-        action: model.nu(),
+        action: model.nu() / agents,
         dt: DT,
         bootstrap: 1 << TRUNCATED | 1 << SUCCESS,
         bootstraps_often: true,
     }
 }
 
-/// The argument of [`proprioception`]: one character, the first tree, and its key bodies.
+/// Agents of a world: the trees of its model that have drives. They come first, and are all alike.
+pub fn agents(model: &Model) -> usize {
+    let driven = |tree: &&KinematicTree| {
+        let mut dofs = model.dofs[tree.dofs.clone()].iter();
+        dofs.any(|dof| dof.drive.is_some())
+    };
+    model.trees.iter().filter(driven).count()
+}
+
+/// Index of the first agent's body of this name, whatever prefix its part of the world has; the other agents'
+/// follow at distances of [`agent_bodies`].
+pub fn agent_body(model: &Model, name: &str) -> u32 {
+    let is_it = |body: &Body| body.name.rsplit('/').next() == Some(name);
+    let found = model.bodies.iter().position(is_it);
+    found.expect("a body of the humanoid") as u32
+}
+
+/// Bodies of an agent.
+pub fn agent_bodies(model: &Model) -> usize {
+    model.trees[0].bodies.len()
+}
+
+/// The argument of [`proprioception`]: how many key bodies there are, then of every agent its tree and its key
+/// bodies.
 pub fn characters(model: &Model) -> Vec<u32> {
-    let keys = KEY_BODIES.map(|name| body(model, name));
-    [&[keys.len() as u32, 0], &keys[..]].concat()
+    let keys = KEY_BODIES.map(|name| agent_body(model, name));
+    let bodies = agent_bodies(model) as u32;
+    let own = |agent: u32| {
+        [agent]
+            .into_iter()
+            .chain(keys.map(|key| key + agent * bodies))
+    };
+    let all = (0..agents(model) as u32).flat_map(own);
+    [keys.len() as u32].into_iter().chain(all).collect()
 }
 
 pub struct Common {
@@ -65,7 +96,10 @@ impl Common {
     pub fn new(task: Arc<dyn HumanoidTask>, envs: Range<usize>, seed: u32) -> Common {
         let model = task.model().clone();
         Common {
-            spec: spec(&model, task.observation(), envs.len()),
+            spec: EnvSpec {
+                bootstrap: task.bootstrap(),
+                ..spec(&model, task.observation(), envs.len())
+            },
             first: envs.start,
             action_scale: action_scale(&model),
             characters: characters(&model),
@@ -111,7 +145,7 @@ impl Common {
     pub fn action_targets(&self, at: usize) -> action_targets::Params {
         action_targets::Params {
             envs: self.spec.envs as u32,
-            driven: self.spec.action as u32,
+            driven: self.batch.model.nu() as u32,
             at: at as u32,
         }
     }
@@ -121,17 +155,19 @@ impl Common {
         let (rules, model) = (self.task.rules(), &self.batch.model);
         end_episode::Params {
             envs: self.spec.envs as u32,
+            agents: self.spec.agents as u32,
             at: at as u32,
             nq: model.nq() as u32,
             nv: model.nv() as u32,
-            bodies: model.trees[0].bodies.len() as u32,
-            head: body(model, "head"),
-            pelvis: body(model, "pelvis"),
-            right_foot: body(model, "right_foot"),
-            left_foot: body(model, "left_foot"),
+            bodies: agent_bodies(model) as u32,
+            head: agent_body(model, "head"),
+            pelvis: agent_body(model, "pelvis"),
+            right_foot: agent_body(model, "right_foot"),
+            left_foot: agent_body(model, "left_foot"),
             measures: self.measures as u32,
             max_steps: rules.steps(),
             successes: self.task.successes(),
+            falls_end: u32::from(self.task.falls_end()),
             min_head: rules.min_head_height,
             min_pelvis: rules.min_pelvis_height,
             min_body: rules.min_body_height,
@@ -140,15 +176,18 @@ impl Common {
     }
 
     pub fn draw_starts(&self, moment: &StepContext) -> draw_starts::Params {
-        let model = &self.batch.model;
-        let width = model.nq() + model.nv();
+        let (model, agents) = (&self.batch.model, self.spec.agents);
+        let (positions, velocities) = (model.nq() / agents, model.nv() / agents);
+        let width = positions + velocities;
         draw_starts::Params {
             envs: moment.envs,
+            agents: agents as u32,
             first: moment.first,
             seed: moment.seed,
             reset_counter: moment.step_counter,
             count: (self.task.start_states().len() / width) as u32,
-            width: width as u32,
+            positions: positions as u32,
+            velocities: velocities as u32,
         }
     }
 
@@ -157,14 +196,10 @@ impl Common {
     pub fn proprioception(&self, at: usize, only: u32) -> proprioception::Params {
         proprioception::Params {
             envs: self.spec.envs as u32,
-            characters: 1,
+            characters: self.spec.agents as u32,
             width: self.spec.observation.dim() as u32,
             at: at as u32,
             only,
         }
     }
-}
-
-fn body(model: &Model, name: &str) -> u32 {
-    model.body(name).expect("a body of the humanoid") as u32
 }

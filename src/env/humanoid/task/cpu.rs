@@ -1,7 +1,8 @@
 //! A task on all cores: each world plays its step from beginning to end while it is in the cache.
 
 use super::common::Common;
-use super::humanoid_task::{HumanoidTask, StepContext};
+use super::common::agent_bodies;
+use super::humanoid_task::{HumanoidTask, StepContext, StepOutcome};
 use crate::container::{Section, SectionError};
 use crate::env::body_view::{BodyStates, BodyView, BodyWorlds};
 use crate::env::humanoid::batch::{CpuSimulatorBatch, SimulatedWorld, SimulatorBatch};
@@ -10,7 +11,7 @@ use crate::env::spec::EnvSpec;
 use crate::env::vec_env::{Transition, VecEnv};
 use crate::gpu::Array;
 use crate::kernels::humanoid::action_targets::set_targets;
-use crate::kernels::humanoid::draw_starts::start;
+use crate::kernels::humanoid::draw_starts::draw;
 use crate::kernels::humanoid::end_episode::{self, LIMIT, end, fields, sums_at};
 use crate::kernels::physics::proprioception;
 use crate::kernels::physics::smooth_dynamics;
@@ -30,24 +31,24 @@ pub struct CpuHumanoidEnv {
     common: Common,
     /// The physics. External forces, a task's or somebody else's, last for a step.
     pub batch: CpuSimulatorBatch,
-    /// Steps, return, measures and sums of each environment, see [`end_episode`].
+    /// Steps, return, measures and sums of each agent, `[rows][fields]`, see [`end_episode`].
     pub episodes: Vec<Vec<f32>>,
     /// What each environment carries for the task, `[envs][state_dim]`.
     pub task_states: Vec<Vec<f32>>,
-    /// `[envs][observation]` of this moment.
+    /// `[rows][observation]` of this moment.
     observation: Vec<f32>,
     /// Where to leave every step's state, if somebody watches.
     live_view: Option<Arc<Mutex<BodyStates>>>,
 }
 
-/// What a world reads and writes in a step.
-struct Row<'a> {
+/// What a world reads and writes in a step: of each of its agents in turn, but for the state of the task.
+struct WorldRows<'a> {
     action: &'a [f32],
-    episode: &'a mut [f32],
+    episodes: &'a mut [Vec<f32>],
     task_state: &'a mut [f32],
-    reward: &'a mut f32,
-    termination: &'a mut u32,
-    group: &'a mut u32,
+    reward: &'a mut [f32],
+    termination: &'a mut [u32],
+    group: &'a mut [u32],
     final_observation: &'a mut [f32],
     observation: &'a mut [f32],
 }
@@ -80,11 +81,11 @@ impl CpuHumanoidEnv {
         for (env, (world, state)) in batch.worlds.iter_mut().zip(&mut task_states).enumerate() {
             common.begin(env, &moment, world, state);
         }
-        let mut episodes = vec![vec![0.0; fields(common.measures)]; limits.len()];
-        for (episode, &limit) in episodes.iter_mut().zip(limits) {
-            episode[LIMIT] = limit;
+        let mut episodes = vec![vec![0.0; fields(common.measures)]; common.spec.rows()];
+        for (row, episode) in episodes.iter_mut().enumerate() {
+            episode[LIMIT] = limits[row / common.spec.agents];
         }
-        let observation = vec![0.0; limits.len() * common.spec.observation.dim()];
+        let observation = vec![0.0; common.spec.rows() * common.spec.observation.dim()];
         let mut envs = CpuHumanoidEnv {
             common,
             batch,
@@ -100,6 +101,12 @@ impl CpuHumanoidEnv {
     /// The task.
     pub fn task(&self) -> &dyn HumanoidTask {
         &*self.common.task
+    }
+
+    /// What an agent observes now, `[observation]`.
+    pub fn seen(&self, row: usize) -> &[f32] {
+        let dim = self.common.spec.observation.dim();
+        &self.observation[row * dim..][..dim]
     }
 
     /// Puts the target of an environment elsewhere on the ground, m: see [`HumanoidTask::move_target`].
@@ -119,8 +126,10 @@ impl CpuHumanoidEnv {
     }
 
     fn observe_all(&mut self) {
-        let (common, dim) = (&self.common, self.common.spec.observation.dim());
-        let rows = self.observation.chunks_exact_mut(dim);
+        let common = &self.common;
+        let rows = self
+            .observation
+            .chunks_exact_mut(common.world_observation());
         let mut rows: Vec<_> = rows.zip(&self.task_states).collect();
         self.batch
             .each(&mut rows, |_, simulator, world, (row, state)| {
@@ -141,6 +150,11 @@ impl CpuHumanoidEnv {
 }
 
 impl Common {
+    /// Numbers that all agents of a world observe.
+    fn world_observation(&self) -> usize {
+        self.spec.agents * self.spec.observation.dim()
+    }
+
     /// Begins an episode of a world.
     fn begin(
         &self,
@@ -149,14 +163,19 @@ impl Common {
         world: &mut SimulatedWorld,
         state: &mut [f32],
     ) {
-        let drawn = start(self.task.start_states(), env, &self.draw_starts(moment));
-        world.start.copy_from_slice(drawn);
+        let start_states = self.task.start_states();
+        draw(
+            start_states,
+            env,
+            &mut world.start,
+            &self.draw_starts(moment),
+        );
         state.fill(0.0);
         self.task.begin(env, moment, &mut world.start, state);
         world.reset();
     }
 
-    /// Observes a world whose kinematics the simulator has computed.
+    /// Observes a world whose kinematics the simulator has computed, for all its agents.
     fn observe(
         &self,
         simulator: &Simulator,
@@ -164,17 +183,21 @@ impl Common {
         state: &[f32],
         out: &mut [f32],
     ) {
-        proprioception::observe(
-            &simulator.model,
-            &world.state.q,
-            &world.state.v,
-            &simulator.poses,
-            &simulator.velocities,
-            &self.characters[1..],
-            out,
-        );
-        let out = &mut out[self.body_dim()..];
-        self.task.observe(simulator, world, state, out);
+        let characters = self.characters[1..].chunks_exact(1 + self.characters[0] as usize);
+        let rows = out.chunks_exact_mut(self.spec.observation.dim());
+        for (agent, (character, row)) in characters.zip(rows).enumerate() {
+            proprioception::observe(
+                &simulator.model,
+                &world.state.q,
+                &world.state.v,
+                &simulator.poses,
+                &simulator.velocities,
+                character,
+                row,
+            );
+            let row = &mut row[self.body_dim()..];
+            self.task.observe(agent, simulator, world, state, row);
+        }
     }
 
     /// Plays one step of a world.
@@ -183,33 +206,54 @@ impl Common {
         env: usize,
         simulator: &mut Simulator,
         world: &mut SimulatedWorld,
-        row: &mut Row,
+        rows: &mut WorldRows,
         params: &StepParams,
     ) {
-        set_targets(row.action, &self.action_scale, &mut world.targets);
+        set_targets(rows.action, &self.action_scale, &mut world.targets);
         self.task.act(env, &params.now, world);
         world.advance(simulator, params.force_pairs);
         world.external_forces.fill(Spatial::ZERO);
         simulator.kinematics(&world.state.q, &world.state.v);
-        let mut measures = vec![0.0; self.measures];
-        let task = &self.task;
-        let outcome = task.reward(simulator, world, row.task_state, &mut measures);
-        (*row.reward, *row.group) = (outcome.reward, outcome.group);
-        let step = end_episode::EpisodeStep {
-            q: &world.state.q,
-            v: &world.state.v,
-            poses: &simulator.poses,
-            measures: &measures,
-            task_end: outcome.end,
-        };
-        let end = end(&step, row.reward, row.episode, &params.end_episode);
-        *row.termination = end;
-        if end != termination::RUNNING {
-            self.observe(simulator, world, row.task_state, row.final_observation);
-            self.begin(env, &params.next, world, row.task_state);
+        self.end_step(simulator, world, rows, params);
+        if rows.termination[0] != termination::RUNNING {
+            self.observe(simulator, world, rows.task_state, rows.final_observation);
+            self.begin(env, &params.next, world, rows.task_state);
             simulator.kinematics(&world.state.q, &world.state.v);
         }
-        self.observe(simulator, world, row.task_state, row.observation);
+        self.observe(simulator, world, rows.task_state, rows.observation);
+    }
+
+    /// What the step of a world comes to for its agents, and how it ends.
+    fn end_step(
+        &self,
+        simulator: &Simulator,
+        world: &SimulatedWorld,
+        rows: &mut WorldRows,
+        params: &StepParams,
+    ) {
+        let mut outcomes = vec![StepOutcome::default(); self.spec.agents];
+        let mut measures = vec![0.0; self.spec.agents * self.measures];
+        self.task.reward(
+            &params.now,
+            simulator,
+            world,
+            rows.task_state,
+            &mut outcomes,
+            &mut measures,
+        );
+        for (agent, outcome) in outcomes.iter().enumerate() {
+            let step = end_episode::EpisodeStep {
+                q: &world.state.q,
+                v: &world.state.v,
+                poses: &simulator.poses[agent * agent_bodies(&simulator.model)..],
+                measures: &measures[agent * self.measures..][..self.measures],
+                task_end: outcome.end,
+            };
+            let (reward, episode) = (&mut rows.reward[agent], &mut rows.episodes[agent]);
+            *reward = outcome.reward;
+            rows.group[agent] = outcome.group;
+            rows.termination[agent] = end(&step, reward, episode, &params.end_episode);
+        }
     }
 }
 
@@ -227,8 +271,9 @@ impl VecEnv for CpuHumanoidEnv {
     }
 
     fn step(&mut self, action: &Array, at: usize, out: Transition) {
-        let (envs, dim) = (self.common.spec.envs, self.common.spec.observation.dim());
-        let now = self.common.moment();
+        let (spec, now) = (self.common.spec, self.common.moment());
+        let (agents, dim) = (spec.agents, self.common.world_observation());
+        let first = out.step * spec.rows();
         let force_pairs = self.common.batch.force_pairs();
         let params = StepParams {
             next: StepContext {
@@ -239,25 +284,25 @@ impl VecEnv for CpuHumanoidEnv {
             end_episode: self.common.end_episode(0),
             force_pairs: &force_pairs[1..],
         };
-        let actions = action.host()[at..].chunks_exact(self.common.spec.action);
-        let rewards = &mut out.reward.host_mut()[out.step * envs..][..envs];
-        let terminations = &mut out.termination.host_mut()[out.step * envs..][..envs];
-        let groups = &mut out.group.host_mut()[out.step * envs..][..envs];
-        let finals =
-            &mut out.final_observation.host_mut()[self.common.spec.final_row(out.step) * dim..];
-        let finals = finals.chunks_exact_mut(dim);
+        let actions = action.host()[at..].chunks_exact(agents * spec.action);
+        let rewards = out.reward.host_mut()[first..].chunks_exact_mut(agents);
+        let terminations = out.termination.host_mut()[first..].chunks_exact_mut(agents);
+        let groups = out.group.host_mut()[first..].chunks_exact_mut(agents);
+        let final_at = spec.final_row(out.step) * spec.observation.dim();
+        let finals = out.final_observation.host_mut()[final_at..].chunks_exact_mut(dim);
         let observations = self.observation.chunks_exact_mut(dim);
-        let rows = actions.zip(&mut self.episodes).zip(&mut self.task_states);
-        let rows = rows.zip(rewards).zip(terminations.iter_mut().zip(groups));
+        let episodes = self.episodes.chunks_exact_mut(agents);
+        let rows = actions.zip(episodes).zip(&mut self.task_states);
+        let rows = rows.zip(rewards).zip(terminations.zip(groups));
         let rows = rows.zip(finals.zip(observations));
-        let mut rows: Vec<Row> = rows
+        let mut rows: Vec<WorldRows> = rows
             .map(
                 |(
-                    ((((action, episode), task_state), reward), (termination, group)),
+                    ((((action, episodes), task_state), reward), (termination, group)),
                     (last, observation),
-                )| Row {
+                )| WorldRows {
                     action,
-                    episode,
+                    episodes,
                     task_state,
                     reward,
                     termination,
@@ -268,8 +313,8 @@ impl VecEnv for CpuHumanoidEnv {
             )
             .collect();
         let common = &self.common;
-        self.batch.each(&mut rows, |env, simulator, world, row| {
-            common.play(env, simulator, world, row, &params);
+        self.batch.each(&mut rows, |env, simulator, world, rows| {
+            common.play(env, simulator, world, rows, &params);
         });
         self.common.step_counter += 1;
         self.show();
@@ -293,6 +338,12 @@ impl VecEnv for CpuHumanoidEnv {
         }
     }
 
+    fn row_stats(&self) -> Result<Vec<f32>> {
+        let sums = sums_at(self.common.measures);
+        let rows = self.episodes.iter().flat_map(|episode| &episode[sums..]);
+        Ok(rows.copied().collect())
+    }
+
     fn live_view(&mut self) -> Result<Option<LiveView>> {
         let states = Arc::new(Mutex::new(BodyStates::default()));
         self.live_view = Some(states.clone());
@@ -309,14 +360,16 @@ impl VecEnv for CpuHumanoidEnv {
 
     fn save(&self, to: &mut Section) -> Result<()> {
         let (envs, model) = (self.common.spec.envs, &self.common.batch.model);
-        let room = self.room();
-        let mut episodes = vec![0.0; fields(self.common.measures) * envs];
+        let (room, rows) = (self.room(), self.common.spec.rows());
+        let mut episodes = vec![0.0; fields(self.common.measures) * rows];
         let mut task_states = vec![0.0; self.common.task.state_dim() * envs];
         let mut warm_start = vec![0; warm_start_dim(room, model.joints.len()) * envs];
         for (env, world) in self.batch.worlds.iter().enumerate() {
-            scatter(&mut episodes, envs, env, 0, &self.episodes[env]);
             scatter(&mut task_states, envs, env, 0, &self.task_states[env]);
             write_warm_start(&world.state, &mut warm_start, envs, env, room);
+        }
+        for (row, episode) in self.episodes.iter().enumerate() {
+            scatter(&mut episodes, rows, row, 0, episode);
         }
         to.put("step_counter", self.common.step_counter);
         to.put_array("state", &self.batch.state()?);
@@ -328,21 +381,23 @@ impl VecEnv for CpuHumanoidEnv {
 
     fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
         let (envs, model) = (self.common.spec.envs, self.common.batch.model.clone());
-        let joints = model.joints.len();
+        let (joints, rows) = (model.joints.len(), self.common.spec.rows());
         let room = warm_start_room(from.array_len("warm_start") / envs, joints);
         let step_counter = from.get("step_counter")?;
         let state = from.take_finite("state", (model.nq() + model.nv()) * envs)?;
         let warm_start: Vec<u32> =
             from.take_array("warm_start", warm_start_dim(room, joints) * envs)?;
-        let episodes = from.take_finite("episodes", fields(self.common.measures) * envs)?;
+        let episodes = from.take_finite("episodes", fields(self.common.measures) * rows)?;
         let task_states = self.common.task.state_dim() * envs;
         let task_states = from.take_finite("task_state", task_states)?;
         self.common.step_counter = step_counter;
         for (env, world) in self.batch.worlds.iter_mut().enumerate() {
             smooth_dynamics::read(&model, &state, envs, env, &mut world.state);
             read_warm_start(&warm_start, envs, env, room, &mut world.state);
-            gather(&episodes, envs, env, 0, &mut self.episodes[env]);
             gather(&task_states, envs, env, 0, &mut self.task_states[env]);
+        }
+        for (row, episode) in self.episodes.iter_mut().enumerate() {
+            gather(&episodes, rows, row, 0, episode);
         }
         self.observe_all();
         Ok(())

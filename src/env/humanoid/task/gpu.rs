@@ -23,7 +23,7 @@ pub struct GpuHumanoidEnv {
     action_scale: Buffer<f32>,
     start_states: Buffer<f32>,
     characters: Buffer<u32>,
-    /// `[fields][envs]`, see [`end_episode`].
+    /// `[fields][rows]`, see [`end_episode`].
     episodes: Buffer<f32>,
 }
 
@@ -33,18 +33,20 @@ impl GpuHumanoidEnv {
     /// # Errors
     /// The model is too large for the shaders.
     pub fn new(common: Common, limits: &[f32], gpu: &Gpu) -> Result<GpuHumanoidEnv> {
-        let envs = limits.len();
-        let mut episodes = vec![0.0; fields(common.measures) * envs];
-        episodes[LIMIT * envs..][..envs].copy_from_slice(limits);
+        let (envs, rows) = (limits.len(), common.spec.rows());
+        let mut episodes = vec![0.0; fields(common.measures) * rows];
+        for (row, limit) in episodes[LIMIT * rows..][..rows].iter_mut().enumerate() {
+            *limit = limits[row / common.spec.agents];
+        }
         // A buffer has at least one number.
-        let zeros = |fields: usize| Buffer::zeroed(gpu, fields.max(1) * envs);
+        let zeros = |fields: usize, columns: usize| Buffer::zeroed(gpu, fields.max(1) * columns);
         let envs = GpuHumanoidEnv {
             task: common.task.on_gpu(gpu),
             worlds: TaskBuffers {
                 batch: GpuSimulatorBatch::new(&common.batch, gpu)?,
-                state: zeros(common.task.state_dim()),
-                measures: zeros(common.measures),
-                task_end: Buffer::zeroed(gpu, envs),
+                state: zeros(common.task.state_dim(), envs),
+                measures: zeros(common.measures, rows),
+                task_end: Buffer::zeroed(gpu, rows),
                 ended: Buffer::from_slice(gpu, &vec![termination::TRUNCATED; envs]),
                 gpu: gpu.clone(),
             },
@@ -118,7 +120,7 @@ impl VecEnv for GpuHumanoidEnv {
         self.task.act(worlds, &moment);
         worlds.batch.advance();
         worlds.batch.kinematics();
-        let at = out.step * self.common.spec.envs;
+        let at = out.step * self.common.spec.rows();
         let (reward, group) = (out.reward.buffer(), out.group.buffer());
         self.task.reward(worlds, reward, group, at, &moment);
         end_episode::launch(
@@ -151,11 +153,19 @@ impl VecEnv for GpuHumanoidEnv {
             &self.episodes,
             out.buffer(),
             &episode_sums::Params {
-                envs: self.common.spec.envs as u32,
+                envs: self.common.spec.rows() as u32,
                 start: sums_at(self.common.measures) as u32,
                 fields: self.stat_names().len() as u32,
             },
         );
+    }
+
+    fn row_stats(&self) -> Result<Vec<f32>> {
+        let (rows, stats) = (self.common.spec.rows(), self.stat_names().len());
+        let episodes = self.episodes.read(&self.worlds.gpu)?;
+        let sums = &episodes[sums_at(self.common.measures) * rows..];
+        let numbers = (0..rows * stats).map(|at| sums[at % stats * rows + at / stats]);
+        Ok(numbers.collect())
     }
 
     fn live_view(&mut self) -> Result<Option<LiveView>> {

@@ -21,7 +21,7 @@ pub struct StepContext {
     pub step_counter: u32,
 }
 
-/// A task of a simulated body, which is the first tree of the model.
+/// A task of simulated bodies: the agents of a world are the trees of its model that have drives.
 ///
 /// A world carries, besides the physics, [`HumanoidTask::state_dim`] numbers of the task's own. Episodes
 /// begin in one of the start states, as [`HumanoidTask::begin`] changes it.
@@ -32,7 +32,8 @@ pub trait HumanoidTask: Send + Sync {
     /// Length and failures of an episode.
     fn rules(&self) -> &EpisodeRules;
 
-    /// States in which episodes begin, `[n][nq + nv]`, each as likely.
+    /// States in which episodes begin, `[n][nq + nv]`, each as likely. Of several agents each draws its own,
+    /// `[n][(nq + nv) / agents]`.
     fn start_states(&self) -> &[f32];
 
     /// An action that keeps the body as it is, `[action]`.
@@ -45,6 +46,16 @@ pub trait HumanoidTask: Send + Sync {
     /// Ends that are successes, `1 << termination`: to be up at the end, unless the task says otherwise.
     fn successes(&self) -> u32 {
         1 << termination::TRUNCATED
+    }
+
+    /// Ends after which the value of the final observation goes on, `1 << termination`.
+    fn bootstrap(&self) -> u32 {
+        1 << termination::TRUNCATED | 1 << termination::SUCCESS
+    }
+
+    /// Whether a fall ends the episode. If not, the task sees to falls itself.
+    fn falls_end(&self) -> bool {
+        true
     }
 
     /// Numbers that are observed besides the body's own, which come first.
@@ -65,15 +76,17 @@ pub trait HumanoidTask: Send + Sync {
     /// Acts on a world before its step.
     fn act(&self, _env: usize, _moment: &StepContext, _world: &mut SimulatedWorld) {}
 
-    /// What a step comes to. `simulator` has the kinematics after the step; `measures` are zero before.
+    /// Writes what a step comes to for each agent. `simulator` has the kinematics after the step; `outcomes`,
+    /// `[agents]`, and `measures`, `[agents][measures]`, are zero before. It ends for all agents or for none.
     fn reward(
         &self,
+        _moment: &StepContext,
         _simulator: &Simulator,
         _world: &SimulatedWorld,
         _state: &mut [f32],
+        _outcomes: &mut [StepOutcome],
         _measures: &mut [f32],
-    ) -> StepOutcome {
-        StepOutcome::default()
+    ) {
     }
 
     /// Begins an episode: changes the start state that was drawn, `[nq + nv]`, and sets the task's.
@@ -87,9 +100,10 @@ pub trait HumanoidTask: Send + Sync {
     /// Puts the target elsewhere on the ground, m, if the task has one.
     fn move_target(&self, _at: [f32; 2], _world: &mut SimulatorState, _state: &mut [f32]) {}
 
-    /// Observes what the task adds.
+    /// Observes what the task adds for an agent.
     fn observe(
         &self,
+        _agent: usize,
         _simulator: &Simulator,
         _world: &SimulatedWorld,
         _state: &[f32],
@@ -120,8 +134,8 @@ pub trait GpuHumanoidTask: Send {
     /// Changes the starts of the worlds whose step ended.
     fn begin(&self, _worlds: &TaskBuffers, _moment: &StepContext) {}
 
-    /// Observes what the task adds, of the worlds whose step ended as one of `only`, `1 << termination`:
-    /// from the index `at` on, a row each `width` numbers.
+    /// Observes what the task adds, of the agents of worlds whose step ended as one of `only`,
+    /// `1 << termination`: from the index `at` on, a row each `width` numbers.
     fn observe(
         &self,
         _worlds: &TaskBuffers,
@@ -141,20 +155,21 @@ pub struct TaskBuffers {
     pub batch: GpuSimulatorBatch,
     /// The task's own numbers, `[state_dim][envs]`.
     pub state: Buffer<f32>,
-    /// What the task measured of this step, `[measures][envs]`.
+    /// What the task measured of this step, `[measures][rows]`.
     pub measures: Buffer<f32>,
-    /// How this step ends for the task, `[envs]`.
+    /// How this step ends for the task, `[rows]`: see [`StepOutcome::end`].
     pub task_end: Buffer<u32>,
     /// How it ended, `[envs]`.
     pub ended: Buffer<u32>,
 }
 
-/// What a step comes to for a task.
+/// What a step comes to for an agent of a task.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepOutcome {
     /// Its reward.
     pub reward: f32,
-    /// How it ends for the task, see [`termination`].
+    /// How it ends for the task, see [`termination`]; [`termination::LEADS`] added if the episode, should it
+    /// end now, is a success whatever [`HumanoidTask::successes`] says.
     pub end: u32,
     /// See [`Transition::group`](crate::env::Transition::group).
     pub group: u32,

@@ -1,4 +1,4 @@
-//! What differs between the tasks of the simulated body, and the environments that play any of them.
+//! What differs between the tasks of simulated bodies, and the environments that play any of them.
 //!
 //! [`HumanoidTask`] is what a task adds to a step of the physics; [`open`] opens a batch of it on either
 //! device; [`EpisodeRules`] says how long an episode is and when it has failed.
@@ -11,7 +11,7 @@ mod open;
 pub mod play;
 mod rules;
 
-pub use common::{KEY_BODIES, characters, spec};
+pub use common::{KEY_BODIES, agent_bodies, agent_body, agents, characters, spec};
 pub use cpu::CpuHumanoidEnv;
 pub use humanoid_task::{
     COMMON_STATS, GpuHumanoidTask, HumanoidTask, StepContext, StepOutcome, TaskBuffers,

@@ -9,16 +9,28 @@ use crate::kernels::termination;
 use crate::physics::motion_clip::MotionClip;
 
 /// Steps environments one episode long, under a driver in some `state`. `after` is shown every step, with how it
-/// ended for each and what the driver remembers, and says whether to go on.
+/// ended for each agent and what the driver remembers, and says whether to go on.
 pub fn play(
     envs: &mut CpuHumanoidEnv,
     driver: &dyn BodyDriver,
-    mut state: DriverState,
-    mut after: impl FnMut(&CpuHumanoidEnv, &[u32], &mut DriverState) -> bool,
+    state: DriverState,
+    after: impl FnMut(&CpuHumanoidEnv, &[u32], &mut DriverState) -> bool,
+) {
+    let act = |observation: &[f32], state: &mut DriverState| driver.act(observation, state);
+    play_by(envs, act, state, after);
+}
+
+/// [`play`] by whoever decides on actions `[rows][action]` for observations `[rows][observation]`, and remembers
+/// `state`.
+pub fn play_by<S>(
+    envs: &mut CpuHumanoidEnv,
+    mut act: impl FnMut(&[f32], &mut S) -> Vec<f32>,
+    mut state: S,
+    mut after: impl FnMut(&CpuHumanoidEnv, &[u32], &mut S) -> bool,
 ) {
     let mut step = DrivenStep::new(envs);
     for _ in 0..envs.task().rules().steps() {
-        step.play(envs, driver, &mut state);
+        step.play_by(envs, |observation| act(observation, &mut state));
         if !after(envs, step.ends.host(), &mut state) {
             return;
         }
@@ -59,8 +71,14 @@ impl DrivenStep {
         driver: &dyn BodyDriver,
         state: &mut DriverState,
     ) {
+        self.play_by(envs, |observation| driver.act(observation, state));
+    }
+
+    /// [`DrivenStep::play`] by whoever decides on actions `[rows][action]` for observations
+    /// `[rows][observation]`.
+    pub fn play_by(&mut self, envs: &mut CpuHumanoidEnv, act: impl FnOnce(&[f32]) -> Vec<f32>) {
         envs.observe(&mut self.observation, 0);
-        let action = Array::Host(driver.act(self.observation.host(), state));
+        let action = Array::Host(act(self.observation.host()));
         let out = Transition {
             step: 0,
             reward: &mut self.reward,
@@ -73,36 +91,48 @@ impl DrivenStep {
     }
 }
 
-/// How the first episode of each environment went.
+/// How the first episode of each agent went.
 pub struct Episodes {
-    /// How it ended, `[envs]`.
+    /// How it ended, `[rows]`.
     pub ends: Vec<u32>,
-    /// The sums of its statistics, `[envs][stats]`.
+    /// The sums of its statistics, `[rows][stats]`.
     pub sums: Vec<Vec<f32>>,
 }
 
 /// Plays one episode of each environment to its end, under a driver in some `state`. `after` is shown every step,
-/// with those still in their first episode and what the driver remembers.
+/// with the agents still in their first episode and what the driver remembers.
 pub fn play_episodes(
     envs: &mut CpuHumanoidEnv,
     driver: &dyn BodyDriver,
     state: DriverState,
-    mut after: impl FnMut(&CpuHumanoidEnv, &[bool], &mut DriverState),
+    after: impl FnMut(&CpuHumanoidEnv, &[bool], &mut DriverState),
 ) -> Episodes {
-    let count = envs.spec().envs;
+    let act = |observation: &[f32], state: &mut DriverState| driver.act(observation, state);
+    play_episodes_by(envs, act, state, after)
+}
+
+/// [`play_episodes`] by whoever decides on actions `[rows][action]` for observations `[rows][observation]`, and
+/// remembers `state`.
+pub fn play_episodes_by<S>(
+    envs: &mut CpuHumanoidEnv,
+    act: impl FnMut(&[f32], &mut S) -> Vec<f32>,
+    state: S,
+    mut after: impl FnMut(&CpuHumanoidEnv, &[bool], &mut S),
+) -> Episodes {
+    let count = envs.spec().rows();
     let mut found = Episodes {
         ends: vec![termination::RUNNING; count],
         sums: vec![Vec::new(); count],
     };
     let mut running = vec![true; count];
-    play(envs, driver, state, |envs, ends, state| {
-        for (env, &end) in ends.iter().enumerate() {
-            if running[env] && end != termination::RUNNING {
+    play_by(envs, act, state, |envs, ends, state| {
+        for (row, &end) in ends.iter().enumerate() {
+            if running[row] && end != termination::RUNNING {
                 let stats = envs.stat_names().len();
-                let episode = &envs.episodes[env];
-                running[env] = false;
-                found.ends[env] = end;
-                found.sums[env] = episode[episode.len() - stats..].to_vec();
+                let episode = &envs.episodes[row];
+                running[row] = false;
+                found.ends[row] = end;
+                found.sums[row] = episode[episode.len() - stats..].to_vec();
             }
         }
         after(envs, &running, state);

@@ -181,11 +181,13 @@ impl HumanoidTask for TrackTask {
 
     fn reward(
         &self,
+        _moment: &StepContext,
         simulator: &Simulator,
         world: &SimulatedWorld,
         state: &mut [f32],
+        outcomes: &mut [StepOutcome],
         measures: &mut [f32],
-    ) -> StepOutcome {
+    ) {
         let body = TrackedBody {
             model: &simulator.model,
             q: &world.state.q,
@@ -194,11 +196,7 @@ impl HumanoidTask for TrackTask {
         };
         let rows = &self.references.rows;
         let (reward, end) = track_reward::step(&body, rows, state, measures, &self.params.reward);
-        StepOutcome {
-            reward,
-            end,
-            ..StepOutcome::default()
-        }
+        (outcomes[0].reward, outcomes[0].end) = (reward, end);
     }
 
     fn wanted(&self, state: &[f32]) -> Option<&[f32]> {
@@ -215,6 +213,7 @@ impl HumanoidTask for TrackTask {
 
     fn observe(
         &self,
+        _agent: usize,
         simulator: &Simulator,
         _world: &SimulatedWorld,
         state: &[f32],

@@ -1,0 +1,135 @@
+//! A learner whose policy joins the pool of its opponents when it wins.
+
+use super::pool::{BoutResult, Pool};
+use super::{Opponent, SelfPlay, SelfPlayEnv};
+use crate::container::{Section, SectionError};
+use crate::env::EnvBatch;
+use crate::nn::Policy;
+use crate::rl::{Algorithm, Iteration};
+use anyhow::{Result, bail};
+use std::any::Any;
+use std::sync::Arc;
+
+/// Any learner, in environments of self-play.
+pub struct SelfPlayLearner {
+    inner: Box<dyn Algorithm>,
+    config: SelfPlay,
+    pool: Pool,
+    /// What repeats the action at rest.
+    scripted: Opponent,
+    /// Steps of an update.
+    rollout_length: usize,
+    /// Numbers of an observation and of an action.
+    dims: [usize; 2],
+    /// Names of metrics that are fractions of the episodes' steps, and of the statistics that count these steps.
+    fractions: &'static [(&'static str, &'static str)],
+}
+
+impl SelfPlayLearner {
+    /// A learner whose opponents are, to begin with, one that repeats the action at rest and the learner's policy as it
+    /// is now. Of the environments' statistics, `fractions` of the steps are told by other names.
+    ///
+    /// # Errors
+    /// The environments are not of self-play, or the device was lost.
+    pub fn new(
+        inner: Box<dyn Algorithm>,
+        config: &SelfPlay,
+        envs: &EnvBatch,
+        rollout_length: usize,
+        fractions: &'static [(&'static str, &'static str)],
+    ) -> Result<Self> {
+        let of_self_play = |part: &dyn Any| part.is::<SelfPlayEnv>();
+        if !envs.parts.iter().all(|part| of_self_play(&**part)) {
+            bail!("a learner by self-play takes environments of self-play");
+        }
+        let spec = envs.spec();
+        let mut rest = envs.rest_action();
+        rest.resize(spec.action, 0.0);
+        let scripted = Opponent::Scripted(rest);
+        let mut learner = SelfPlayLearner {
+            pool: Pool::new(config, Vec::new()),
+            config: *config,
+            inner,
+            scripted,
+            rollout_length,
+            dims: [spec.observation.dim(), spec.action],
+            fractions,
+        };
+        learner.begin_pool()?;
+        Ok(learner)
+    }
+
+    /// The opponents.
+    pub fn pool(&self) -> &Pool {
+        &self.pool
+    }
+
+    fn begin_pool(&mut self) -> Result<()> {
+        let own = Opponent::Frozen(Box::new(self.inner.policy()?));
+        self.pool = Pool::new(&self.config, vec![self.scripted.clone(), own]);
+        Ok(())
+    }
+
+    /// What there is to tell of an update, besides what the learner inside tells.
+    fn metrics(&self, iteration: &Iteration) -> Vec<(&'static str, f64)> {
+        let steps = iteration.stats.sum("steps");
+        let fractions = self.fractions.iter().filter(|_| steps > 0.0);
+        let fractions = fractions.map(|&(name, stat)| (name, iteration.stats.sum(stat) / steps));
+        let win_rate = self.pool.win_rate().map(|rate| ("win_rate", rate));
+        let counts = [
+            ("pool_size", self.pool.members().len() as f64),
+            ("pool_joined", self.pool.joined().into()),
+        ];
+        fractions.chain(win_rate).chain(counts).collect()
+    }
+}
+
+/// The parts of a batch that are of self-play.
+fn fighters(envs: &mut EnvBatch) -> impl Iterator<Item = &mut SelfPlayEnv> {
+    envs.parts.iter_mut().filter_map(|part| {
+        let part: &mut dyn Any = &mut **part;
+        part.downcast_mut()
+    })
+}
+
+impl Algorithm for SelfPlayLearner {
+    fn iterate(&mut self, envs: &mut EnvBatch, steps: u64) -> Result<Iteration> {
+        let opponents = Arc::new(self.pool.opponents());
+        fighters(envs).for_each(|part| part.set_opponents(&opponents));
+        let mut iteration = self.inner.iterate(envs, steps)?;
+        let results: Result<Vec<Vec<BoutResult>>> =
+            fighters(envs).map(SelfPlayEnv::take_results).collect();
+        let results = results?.concat();
+        self.pool.end_update(self.rollout_length, &results);
+        iteration.losses.extend(self.metrics(&iteration));
+        if self.pool.is_due() {
+            let own = self.inner.policy()?;
+            self.pool.admit(Opponent::Frozen(Box::new(own)));
+        }
+        Ok(iteration)
+    }
+
+    fn policy(&self) -> Result<Policy> {
+        self.inner.policy()
+    }
+
+    fn start_from(&mut self, policy: &Policy, section: &mut Section) -> Result<(), SectionError> {
+        self.inner.start_from(policy, section)?;
+        self.begin_pool()
+            .map_err(|error| SectionError(error.to_string()))
+    }
+
+    fn save(&self, to: &mut Section) -> Result<()> {
+        let mut own = Section::default();
+        self.pool.save(&mut own)?;
+        to.put_section("pool", own);
+        self.inner.save(to)
+    }
+
+    fn load(&mut self, from: &mut Section, policy: &Policy) -> Result<(), SectionError> {
+        let [observation, action] = self.dims;
+        self.pool
+            .load(&mut from.take_section("pool"), observation, action)?;
+        self.inner.load(from, policy)
+    }
+}

@@ -1,0 +1,237 @@
+//! The opponents of a training, and how the learner fares against them.
+
+use super::{Opponent, SelfPlay};
+use crate::container::{Section, SectionError};
+use crate::kernels::rng::uniform01;
+use anyhow::Result;
+use std::sync::Arc;
+
+/// An opponent, and the bouts against it, of which earlier ones count less.
+#[derive(Clone)]
+pub struct PoolMember {
+    /// Number of the opponent, from 0 in the order of joining.
+    pub id: u32,
+    /// Who plays.
+    pub opponent: Arc<Opponent>,
+    /// Bouts.
+    pub games: f64,
+    /// Bouts that the learner won; a draw is half of one.
+    pub wins: f64,
+}
+
+impl PoolMember {
+    fn new(id: u32, opponent: Opponent) -> PoolMember {
+        PoolMember {
+            id,
+            opponent: Arc::new(opponent),
+            games: 0.0,
+            wins: 0.0,
+        }
+    }
+
+    /// How much it is to be drawn: the fraction of bouts that the learner does not win. Who has not been met yet is
+    /// drawn as if it always won.
+    pub fn weight(&self) -> f64 {
+        match self.games > 0.0 {
+            true => (1.0 - self.wins / self.games).max(0.0),
+            false => 1.0,
+        }
+    }
+}
+
+/// How a bout ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoutResult {
+    /// Number of the opponent.
+    pub opponent: u32,
+    /// 1 for the learner's win, 0 for its loss, half for a draw.
+    pub score: f32,
+}
+
+/// The opponents of a training.
+pub struct Pool {
+    config: SelfPlay,
+    /// The oldest first; never empty.
+    members: Vec<PoolMember>,
+    /// Number of the next that joins.
+    next: u32,
+    /// Bouts since the last joined.
+    games: u64,
+    /// Updates since then.
+    updates: u64,
+}
+
+impl Pool {
+    /// A pool that begins with some opponents, of whom there is room for the last ones.
+    pub fn new(config: &SelfPlay, first: Vec<Opponent>) -> Pool {
+        let mut pool = Pool {
+            config: *config,
+            members: Vec::new(),
+            next: 0,
+            games: 0,
+            updates: 0,
+        };
+        first.into_iter().for_each(|opponent| pool.admit(opponent));
+        pool
+    }
+
+    /// The opponents, the oldest first.
+    pub fn members(&self) -> &[PoolMember] {
+        &self.members
+    }
+
+    /// How many have joined so far.
+    pub fn joined(&self) -> u32 {
+        self.next
+    }
+
+    /// Fraction of the bouts against all that the learner won.
+    pub fn win_rate(&self) -> Option<f64> {
+        let games: f64 = self.members.iter().map(|member| member.games).sum();
+        let wins: f64 = self.members.iter().map(|member| member.wins).sum();
+        (games > 0.0).then(|| wins / games)
+    }
+
+    /// Takes in the bouts that ended in an update of so many steps. Those against opponents that have left count for
+    /// nothing.
+    pub fn end_update(&mut self, steps: usize, results: &[BoutResult]) {
+        let kept = self.config.decay.powi(steps as i32);
+        for member in &mut self.members {
+            member.games *= kept;
+            member.wins *= kept;
+        }
+        for result in results {
+            let mut members = self.members.iter_mut();
+            if let Some(member) = members.find(|member| member.id == result.opponent) {
+                member.games += 1.0;
+                member.wins += f64::from(result.score);
+                self.games += 1;
+            }
+        }
+        self.updates += 1;
+    }
+
+    /// Whether a copy of the learner is to join.
+    pub fn is_due(&self) -> bool {
+        let SelfPlay {
+            win_rate,
+            games,
+            updates,
+            ..
+        } = self.config;
+        let wins = self.win_rate().is_some_and(|rate| rate > win_rate);
+        let late = updates > 0 && self.updates >= updates;
+        wins && self.games >= games || late
+    }
+
+    /// Lets an opponent join, in the place of the oldest if there is no room.
+    pub fn admit(&mut self, opponent: Opponent) {
+        if self.members.len() >= self.config.pool.max(1) {
+            self.members.remove(0);
+        }
+        self.members.push(PoolMember::new(self.next, opponent));
+        self.next += 1;
+        (self.games, self.updates) = (0, 0);
+    }
+
+    /// Who may be drawn now.
+    pub fn opponents(&self) -> Opponents {
+        Opponents(self.members.clone())
+    }
+
+    /// Saves all of it.
+    ///
+    /// # Errors
+    /// None: it is in host memory.
+    pub fn save(&self, to: &mut Section) -> Result<()> {
+        let ids: Vec<u32> = self.members.iter().map(|member| member.id).collect();
+        let bouts = self
+            .members
+            .iter()
+            .map(|member| [member.games, member.wins]);
+        to.put("members", ids);
+        to.put("since_last", [self.games, self.updates]);
+        to.put("next", self.next);
+        to.put_array("bouts", &bouts.collect::<Vec<_>>());
+        for member in &self.members {
+            let mut own = Section::default();
+            member.opponent.save(&mut own)?;
+            to.put_section(&format!("member-{}", member.id), own);
+        }
+        Ok(())
+    }
+
+    /// Puts back what [`Pool::save`] saved, of opponents that act on so many numbers by so many.
+    ///
+    /// # Errors
+    /// It is not that, or of another pool.
+    pub fn load(
+        &mut self,
+        from: &mut Section,
+        observation: usize,
+        action: usize,
+    ) -> Result<(), SectionError> {
+        let ids: Vec<u32> = from.get("members")?;
+        if ids.is_empty() || ids.len() > self.config.pool {
+            let count = ids.len();
+            return Err(SectionError(format!("its pool has {count} members")));
+        }
+        let bouts: Vec<[f64; 2]> = from.take_array("bouts", ids.len())?;
+        if !bouts
+            .as_flattened()
+            .iter()
+            .all(|sum| (0.0..=1e15).contains(sum))
+        {
+            return Err(SectionError("its pool's bouts are no counts".into()));
+        }
+        [self.games, self.updates] = from.get("since_last")?;
+        self.next = from.get("next")?;
+        let members = ids.into_iter().zip(bouts).map(|(id, [games, wins])| {
+            let own = &mut from.take_section(&format!("member-{id}"));
+            let opponent = Opponent::load(own, observation, action)?;
+            Ok(PoolMember {
+                games,
+                wins,
+                ..PoolMember::new(id, opponent)
+            })
+        });
+        self.members = members.collect::<Result<_, SectionError>>()?;
+        Ok(())
+    }
+}
+
+/// The opponents who may be drawn while a rollout is played.
+pub struct Opponents(Vec<PoolMember>);
+
+impl Opponents {
+    /// One who repeats an action: the first of every pool.
+    pub fn scripted(action: Vec<f32>) -> Opponents {
+        Opponents(vec![PoolMember::new(0, Opponent::Scripted(action))])
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Opponent> {
+        self.0.iter().map(|member| &*member.opponent)
+    }
+
+    /// The index of an opponent by its number; of the newest, if it has left.
+    pub fn index(&self, id: u32) -> usize {
+        let found = self.0.iter().position(|member| member.id == id);
+        found.unwrap_or(self.0.len() - 1)
+    }
+
+    /// The number of the opponent that random `bits` draw, by their weights; where the learner always wins, each is
+    /// as likely.
+    pub fn draw(&self, bits: u32) -> u32 {
+        let mut weights: Vec<f64> = self.0.iter().map(PoolMember::weight).collect();
+        if weights.iter().sum::<f64>() <= 0.0 {
+            weights.fill(1.0);
+        }
+        let mut left = f64::from(uniform01(bits)) * weights.iter().sum::<f64>();
+        let drawn = weights.iter().position(|weight| {
+            left -= weight;
+            left < 0.0
+        });
+        self.0[drawn.unwrap_or(self.0.len() - 1)].id
+    }
+}
