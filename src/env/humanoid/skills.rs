@@ -57,7 +57,7 @@ fn survival_changing(
     let second = (1.0 / DT).round() as u32;
     let start = DriverState::default();
     let found = play_episodes(&mut envs, driver, start, |_, _, state| {
-        let over = state.steps as u32 % second == 0;
+        let over = (state.steps as u32).is_multiple_of(second);
         state.kept.fill(if over { 0 } else { second });
     });
     1.0 - found.fraction(1 << FAILED)

@@ -115,7 +115,8 @@ impl VecEnv for HighLevelEnv {
         for step in 0..STEPS_PER_DECISION {
             self.play(action, at);
             let share = 1.0 / STEPS_PER_DECISION as f32;
-            self.step.count(&self.device, &self.spec, step, share, &mut out);
+            self.step
+                .count(&self.device, &self.spec, step, share, &mut out);
             std::mem::swap(&mut self.before, &mut self.after);
         }
     }

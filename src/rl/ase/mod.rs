@@ -25,8 +25,8 @@ pub use high_level_env::HighLevelEnv;
 pub use latent_draw::LatentDraw;
 pub use latent_driver::LatentDriver;
 pub use latent_env::LatentEnv;
-pub use steady_driver::SteadyDriver;
 use serde::{Deserialize, Serialize};
+pub use steady_driver::SteadyDriver;
 
 /// Steps of the low level that a decision of a high level lasts.
 pub const STEPS_PER_DECISION: usize = 5;
