@@ -120,14 +120,13 @@ impl Columns {
         self.steps += 1;
     }
 
-    /// Rewards, style rewards, terminations, groups and final observations.
-    fn read(&self) -> (Vec<f32>, Vec<f32>, Vec<u32>, Vec<u32>, Vec<f32>) {
+    /// Rewards, style rewards and final observations; terminations and groups.
+    fn read(&self) -> ([Vec<f32>; 3], [Vec<u32>; 2]) {
+        let floats = [&self.reward, &self.style_reward, &self.final_observation];
+        let wholes = [&self.termination, &self.group];
         (
-            self.reward.read(&self.device).unwrap(),
-            self.style_reward.read(&self.device).unwrap(),
-            self.termination.read(&self.device).unwrap(),
-            self.group.read(&self.device).unwrap(),
-            self.final_observation.read(&self.device).unwrap(),
+            floats.map(|column| column.read(&self.device).unwrap()),
+            wholes.map(|column| column.read(&self.device).unwrap()),
         )
     }
 }
@@ -166,7 +165,8 @@ fn its_dimensions_are_those_of_latents() {
 fn decisions_are_five_steps_of_the_low_level() {
     let alone = || bodies(&Device::Cpu, 5..5 + ROWS, 0.3);
     let in_pairs = || fighters(6..6 + ROWS, 0.3);
-    let cases: [(&Arc<FrozenLowLevel>, &dyn Fn() -> Box<dyn VecEnv>); 3] = [
+    type Opened<'a> = &'a dyn Fn() -> Box<dyn VecEnv>;
+    let cases: [(&Arc<FrozenLowLevel>, Opened); 3] = [
         (&LOW_LEVELS[0], &alone),
         (&LOW_LEVELS[1], &alone),
         (&LOW_LEVELS[1], &in_pairs),
@@ -191,7 +191,7 @@ fn decisions_are_five_steps_of_the_low_level() {
             found.extend(hand.decide(&decision));
         }
         let dim = envs.spec().observation.dim();
-        let (rewards, styles, ends, groups, finals) = got.read();
+        let ([rewards, styles, finals], [ends, groups]) = got.read();
         for (at, row) in found.iter().enumerate() {
             close("reward", &rewards[at..=at], &[row.reward], |_| 1e-5);
             close("style", &styles[at..=at], &[row.style / row.steps], |_| {
@@ -256,7 +256,7 @@ impl ByHand<'_> {
         let mut step = Columns::new(&Device::Cpu, inner, 1);
         step.step(inner, &action);
         let after = observed(&Device::Cpu, inner);
-        let (rewards, _, ends, groups, finals) = step.read();
+        let ([rewards, _, finals], [ends, groups]) = step.read();
         for (at, row) in rows.iter_mut().enumerate() {
             if row.last.is_some() {
                 continue;
@@ -295,8 +295,10 @@ fn the_gpu_decides_as_the_cpu_does() {
         }
         (columns.read(), observed(device, &mut envs))
     });
-    assert_eq!((&one.0.2, &one.0.3), (&other.0.2, &other.0.3));
-    assert!(one.0.2.contains(&termination::TRUNCATED));
+    let ((floats, wholes), observation) = one;
+    let ((gpu_floats, gpu_wholes), gpu_observation) = other;
+    assert_eq!(wholes, gpu_wholes);
+    assert!(wholes[0].contains(&termination::TRUNCATED));
     let near = |what: &str, a: &[f32], b: &[f32]| {
         for (at, (a, b)) in a.iter().zip(b).enumerate() {
             // Speeds of joints are of the order of ten.
@@ -306,10 +308,11 @@ fn the_gpu_decides_as_the_cpu_does() {
             );
         }
     };
-    near("reward", &one.0.0, &other.0.0);
-    near("style reward", &one.0.1, &other.0.1);
-    near("final observation", &one.0.4, &other.0.4);
-    near("observation", &one.1, &other.1);
+    let names = ["reward", "style reward", "final observation"];
+    for (name, pair) in names.iter().zip(floats.iter().zip(&gpu_floats)) {
+        near(name, pair.0, pair.1);
+    }
+    near("observation", &observation, &gpu_observation);
 }
 
 #[test]

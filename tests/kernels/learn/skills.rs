@@ -209,7 +209,7 @@ fn encoder_losses_agree() {
                 assert!((f64::from(*grad) - slope).abs() < 1e-4, "{grad} {slope}");
             }
             // A window without a latent asks nothing of the encoder.
-            if (START + row) % 3 == 0 {
+            if (START + row).is_multiple_of(3) {
                 assert_eq!(grads[HEADS..], [0.0; LATENT]);
             }
         }
