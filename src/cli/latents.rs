@@ -23,11 +23,11 @@ pub enum ChosenLatents {
 
 #[derive(Args)]
 pub struct LatentOptions {
-    /// Of a run of `skills`: film strips of so many latents (8, say) that are held, one under another, from the same
-    /// start; those of clips, the most frequent first
+    /// Draw film strips of so many latents of a run of `skills` (8, say), one under another, each held from the same
+    /// start on; those of clips, the most frequent first
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     latents: Option<usize>,
-    /// Of a run of `skills`: from the latent of this number in that picture to another, along the great circle
+    /// Draw the way from the latent of this number in that picture to another, along the great circle
     #[arg(long, value_name = "A,B", value_parser = pair, allow_hyphen_values = true, conflicts_with = "latents")]
     interpolate: Option<[usize; 2]>,
 }

@@ -35,9 +35,19 @@ pub trait VecEnv: Any + Send {
     /// The dimensions of the batch.
     fn spec(&self) -> &EnvSpec;
 
+    /// The environments that these are around, if they are: what these do not do themselves, those do.
+    fn inner(&self) -> Option<&dyn VecEnv> {
+        None
+    }
+
+    /// [`VecEnv::inner`], to be changed.
+    fn inner_mut(&mut self) -> Option<&mut dyn VecEnv> {
+        None
+    }
+
     /// An action that keeps an agent as it is, `[action]`: what a policy begins near. Empty: all zero.
     fn rest_action(&self) -> Vec<f32> {
-        Vec::new()
+        self.inner().map_or(Vec::new(), VecEnv::rest_action)
     }
 
     /// Writes the observations `[rows][observation]` of this moment to `out` from the index `at` on.
@@ -60,18 +70,22 @@ pub trait VecEnv: Any + Send {
     /// # Errors
     /// The device was lost.
     fn row_stats(&self) -> Result<Vec<f32>> {
-        Ok(Vec::new())
+        self.inner().map_or(Ok(Vec::new()), VecEnv::row_stats)
     }
 
     /// Episodes that begin from now on are of this level of a [curriculum](super::curriculum).
-    fn set_level(&mut self, _level: u32) {}
+    fn set_level(&mut self, level: u32) {
+        if let Some(inner) = self.inner_mut() {
+            inner.set_level(level);
+        }
+    }
 
     /// What there is to see while the batch goes on, if there is a view of it.
     ///
     /// # Errors
     /// The device was lost.
     fn live_view(&mut self) -> Result<Option<LiveView>> {
-        Ok(None)
+        self.inner_mut().map_or(Ok(None), VecEnv::live_view)
     }
 
     /// Contacts that found no room on their device since the environments were opened.
@@ -79,7 +93,7 @@ pub trait VecEnv: Any + Send {
     /// # Errors
     /// The device was lost.
     fn contact_overflow(&self) -> Result<u64> {
-        Ok(0)
+        self.inner().map_or(Ok(0), VecEnv::contact_overflow)
     }
 
     /// Writes everything that the environments need to go on as if they had never stopped. Only

@@ -31,7 +31,7 @@ impl BodyEpisodes {
         }
     }
 
-    /// The same under latents, if there are any.
+    /// Lets bodies move under latents, if there are any.
     pub fn with_latents(self, latents: Option<LatentDraw>) -> BodyEpisodes {
         BodyEpisodes { latents, ..self }
     }

@@ -3,17 +3,22 @@
 //! The table `[task]` holds the name of a task and that task's own choices, `[ppo]` those of learning. A
 //! change is a TOML table laid over the preset's: keys that the preset does not have are refused.
 
+mod check;
+mod overlay;
+
 use crate::gpu::Choice;
 use crate::input_file;
 use crate::nn::network::NetworkError;
-use crate::rl::amp::{Amp, DiscriminatorLoss};
+use crate::rl::amp::Amp;
 use crate::rl::ase::Ase;
 use crate::rl::ppo::Ppo;
 use crate::rl::self_play::SelfPlay;
-use crate::rl::task_weight::{TaskWeightConfig, WeightRule};
+use crate::rl::task_weight::TaskWeightConfig;
+pub(super) use check::within;
+pub(super) use overlay::nearest;
+use overlay::{Mistake, different, line_of, names, overlay};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// The version of this program, written into all it leaves behind.
@@ -406,57 +411,6 @@ impl Config {
             ),
         })
     }
-
-    /// Refuses what cannot work, whatever the task.
-    pub(super) fn check(&self) -> Result<(), ConfigError> {
-        const LONG: u64 = 1_000_000_000_000_000;
-        within("steps", self.steps, 1, LONG)?;
-        within("evaluate_every", self.evaluate_every, 1, LONG)?;
-        within("checkpoint_every", self.checkpoint_every, 1, LONG)?;
-        if let Some(seconds) = self.max_time_s {
-            within("max_time_s", seconds, 0.001, 1e9)?;
-        }
-        if let Some(success) = self.stop_at_success {
-            within("stop_at_success", success, 0.01, 1.0)?;
-        }
-        if let Some(unit) = self.unit_m {
-            within("unit_m", f64::from(unit), 1e-6, 1e3)?;
-        }
-        check_ppo(&self.ppo)?;
-        self.amp.as_ref().map_or(Ok(()), check_amp)?;
-        self.ase.as_ref().map_or(Ok(()), check_ase)?;
-        self.self_play.as_ref().map_or(Ok(()), check_self_play)?;
-        self.check_task_weight()
-    }
-
-    /// Refuses a rule for the weights of rewards that cannot be weighed by it.
-    fn check_task_weight(&self) -> Result<(), ConfigError> {
-        let chosen = &self.task_weight;
-        within(
-            "task_weight.style_reference",
-            chosen.style_reference,
-            0.0,
-            1e3,
-        )?;
-        if chosen.rule == WeightRule::Fixed || self.skills.is_some() {
-            return Ok(());
-        }
-        let why = match &self.amp {
-            Some(amp) if amp.loss == DiscriminatorLoss::Hinge => {
-                "it compares style rewards by their ratio, and those of amp.loss = \"hinge\" may be negative".into()
-            }
-            Some(amp) if amp.task_weight > 0.0 => return Ok(()),
-            _ => format!(
-                "it weighs the rewards of task and style, and the task `{}` has but one of them",
-                self.task.name
-            ),
-        };
-        Err(ConfigError::Value {
-            key: "task_weight.rule",
-            value: "pd".into(),
-            why,
-        })
-    }
 }
 
 /// Keys that decide over what is learned.
@@ -513,180 +467,4 @@ pub(super) fn table(choices: &impl Serialize) -> toml::Table {
 pub(super) fn settings<T: DeserializeOwned>(table: &toml::Table) -> Result<T, ConfigError> {
     let choices = table.clone().try_into();
     choices.map_err(|error: toml::de::Error| ConfigError::Settings(one_line(&error)))
-}
-
-/// Refuses a number out of its range, ends included; NaN is in none.
-pub(super) fn within<N: PartialOrd + Display>(
-    key: &'static str,
-    value: N,
-    least: N,
-    most: N,
-) -> Result<(), ConfigError> {
-    if least <= value && value <= most {
-        return Ok(());
-    }
-    Err(ConfigError::Value {
-        key,
-        value: value.to_string(),
-        why: format!("it must lie between {least} and {most}"),
-    })
-}
-
-fn check_ppo(ppo: &Ppo) -> Result<(), ConfigError> {
-    within("ppo.envs", ppo.envs, 1, 1 << 20)?;
-    within("ppo.rollout_length", ppo.rollout_length, 1, 10_000)?;
-    within("ppo.envs times ppo.rollout_length", ppo.batch(), 1, 1 << 23)?;
-    within("ppo.epochs", ppo.epochs, 1, 1000)?;
-    within("ppo.minibatch_size", ppo.minibatch_size, 1, 1 << 23)?;
-    within("ppo.learning_rate", ppo.learning_rate, 1e-9, 1.0)?;
-    within("ppo.final_lr_fraction", ppo.final_lr_fraction, 0.0, 1.0)?;
-    within(
-        "ppo.critic_learning_rate",
-        ppo.critic_learning_rate,
-        0.0,
-        1.0,
-    )?;
-    within("ppo.desired_kl", ppo.desired_kl, 0.0, 100.0)?;
-    within("ppo.gamma", ppo.gamma, 0.0, 1.0)?;
-    within("ppo.lambda", ppo.lambda, 0.0, 1.0)?;
-    within("ppo.clip", ppo.clip, 1e-3, 100.0)?;
-    within("ppo.value_clip", ppo.value_clip, 0.0, 1e6)?;
-    within("ppo.value_coefficient", ppo.value_coefficient, 0.0, 1e3)?;
-    within("ppo.entropy_coefficient", ppo.entropy_coefficient, 0.0, 1e3)?;
-    within("ppo.kl_coefficient", ppo.kl_coefficient, 0.0, 1e3)?;
-    within("ppo.kl_penalty_target", ppo.kl_penalty_target, 1e-6, 100.0)?;
-    within("ppo.max_grad_norm", ppo.max_grad_norm, 0.0, 1e6)?;
-    within("ppo.init_log_std", ppo.init_log_std, -10.0, 2.0)
-}
-
-fn check_amp(amp: &Amp) -> Result<(), ConfigError> {
-    within("amp.heads", amp.heads, 1, 1024)?;
-    within("amp.steps", amp.steps, 1, 1000)?;
-    within("amp.minibatch_size", amp.minibatch_size, 2, 1 << 20)?;
-    within("amp.learning_rate", amp.learning_rate, 1e-9, 1.0)?;
-    within("amp.max_grad_norm", amp.max_grad_norm, 0.0, 1e6)?;
-    within("amp.gradient_penalty", amp.gradient_penalty, 0.0, 1e6)?;
-    within("amp.logit_decay", amp.logit_decay, 0.0, 1e3)?;
-    within("amp.replay_capacity", amp.replay_capacity, 1, 1 << 22)?;
-    within("amp.replay_per_update", amp.replay_per_update, 1, 1 << 22)?;
-    within("amp.style_weight", amp.style_weight, 1e-6, 1e3)?;
-    within("amp.task_weight", amp.task_weight, 0.0, 1e3)
-}
-
-fn check_ase(ase: &Ase) -> Result<(), ConfigError> {
-    let [least, most] = ase.kept_steps;
-    within("ase.latent", ase.latent, 2, 256)?;
-    within("ase.kept_steps", most, 1, 10_000)?;
-    within("the first of ase.kept_steps", least, 1, most)?;
-    within("ase.skill_weight", ase.skill_weight, 0.0, 1e3)?;
-    within("ase.diversity", ase.diversity, 0.0, 1e3)?;
-    within("ase.spread", ase.spread, 0.0, 10.0)
-}
-
-fn check_self_play(chosen: &SelfPlay) -> Result<(), ConfigError> {
-    within("self_play.pool", chosen.pool, 1, 64)?;
-    within("self_play.win_rate", chosen.win_rate, 0.0, 1.0)?;
-    within("self_play.games", chosen.games, 0, 1_000_000_000)?;
-    within("self_play.updates", chosen.updates, 0, 1_000_000_000)?;
-    within("self_play.decay", chosen.decay, 0.0, 1.0)
-}
-
-/// Writes `changes` over `table`, refusing keys that `table` does not know and values of another
-/// kind. `within` is the table's own name with a dot, if it has one; `names` are all known keys.
-fn overlay(
-    table: &mut toml::Table,
-    changes: toml::Table,
-    within: &str,
-    names: &[String],
-) -> Result<(), Mistake> {
-    for (key, value) in changes {
-        let full = format!("{within}{key}");
-        let put = match (table.get_mut(&key), value) {
-            (None, _) => Err(format!(
-                "unknown key `{full}`{}",
-                nearest(&key, names.iter().map(String::as_str))
-            )),
-            (Some(toml::Value::Table(inner)), toml::Value::Table(changes)) => {
-                overlay(inner, changes, &format!("{full}."), names)?;
-                Ok(())
-            }
-            (Some(known), value) => put(known, value).map_err(|why| format!("`{full}` must {why}")),
-        };
-        put.map_err(|problem| Mistake { key: full, problem })?;
-    }
-    Ok(())
-}
-
-/// Writes one value over another of the same kind; the error says what it must be.
-fn put(known: &mut toml::Value, value: toml::Value) -> Result<(), String> {
-    match (known, value) {
-        // Whole numbers stand for numbers.
-        (toml::Value::Float(known), toml::Value::Integer(whole)) => *known = whole as f64,
-        (toml::Value::Integer(_), toml::Value::Integer(..0)) => {
-            return Err("not be negative".to_string());
-        }
-        (known, value) if known.same_type(&value) => *known = value,
-        (known, value) => {
-            let (wanted, found) = (known.type_str(), value.type_str());
-            return Err(format!("be of the type {wanted}, not {found}"));
-        }
-    }
-    Ok(())
-}
-
-/// All keys of a table and the tables in it, like `ppo` and `ppo.envs`.
-fn names(table: &toml::Table, within: &str) -> Vec<String> {
-    let mut all = Vec::new();
-    for (key, value) in table {
-        all.push(format!("{within}{key}"));
-        if let Some(inner) = value.as_table() {
-            all.extend(names(inner, &format!("{within}{key}.")));
-        }
-    }
-    all
-}
-
-/// Which known name may have been meant, if there is any; names may have the tables they stand in
-/// before them.
-pub(super) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
-    let last = |name: &str| name.rfind('.').map_or(0, |dot| dot + 1);
-    let nearest =
-        known.min_by_key(|known| strsim::damerau_levenshtein(name, &known[last(known)..]));
-    nearest.map_or(String::new(), |known| format!(", did you mean `{known}`?"))
-}
-
-/// What is wrong with a key.
-struct Mistake {
-    /// With the tables it stands in, like `ppo.envs`; empty if it is not known which.
-    key: String,
-    problem: String,
-}
-
-/// The first key whose values differ, or that only one table has.
-fn different(one: &toml::Table, other: &toml::Table, within: &str) -> Option<String> {
-    let keys = one.keys().chain(other.keys());
-    keys.filter(|&key| one.get(key) != other.get(key))
-        .find_map(|key| {
-            let full = format!("{within}{key}");
-            match (one.get(key), other.get(key)) {
-                (Some(toml::Value::Table(one)), Some(toml::Value::Table(other))) => {
-                    different(one, other, &format!("{full}."))
-                }
-                _ => Some(full),
-            }
-        })
-}
-
-/// The line (from 1) of a TOML text that has a key, if the text is TOML and has it.
-fn line_of(text: &str, key: &str) -> Option<usize> {
-    let table = toml::de::DeTable::parse(text).ok()?;
-    let mut table = table.get_ref();
-    let mut names = key.split('.').peekable();
-    loop {
-        let (name, value) = table.get_key_value(names.next()?)?;
-        match (names.peek(), value.get_ref()) {
-            (Some(_), toml::de::DeValue::Table(inner)) => table = inner,
-            _ => return Some(1 + text[..name.span().start].matches('\n').count()),
-        }
-    }
 }

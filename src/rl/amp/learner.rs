@@ -56,7 +56,7 @@ impl AmpLearner {
         })
     }
 
-    /// The same learner whose rewards of task and style, if it has both, are weighed so.
+    /// Weighs the rewards of task and style by a rule, if there are both.
     pub fn with_task_weight(mut self, weight: TaskWeight) -> Self {
         self.ppo = self.ppo.with_task_weight(weight);
         self

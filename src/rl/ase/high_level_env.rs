@@ -3,7 +3,6 @@
 use super::batch_low_level::BatchLowLevel;
 use super::{FrozenLowLevel, STEPS_PER_DECISION};
 use crate::container::{Section, SectionError};
-use crate::env::live_view::LiveView;
 use crate::env::{EnvSpec, Transition, VecEnv};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::style_windows;
@@ -106,6 +105,19 @@ impl VecEnv for HighLevelEnv {
         &self.spec
     }
 
+    fn inner(&self) -> Option<&dyn VecEnv> {
+        Some(&*self.inner)
+    }
+
+    fn inner_mut(&mut self) -> Option<&mut dyn VecEnv> {
+        Some(&mut *self.inner)
+    }
+
+    fn rest_action(&self) -> Vec<f32> {
+        // No latent keeps a body as it is.
+        Vec::new()
+    }
+
     fn observe(&mut self, out: &mut Array, at: usize) {
         self.inner.observe(out, at);
     }
@@ -127,22 +139,6 @@ impl VecEnv for HighLevelEnv {
 
     fn stats(&mut self, out: &mut Array) {
         self.inner.stats(out);
-    }
-
-    fn row_stats(&self) -> Result<Vec<f32>> {
-        self.inner.row_stats()
-    }
-
-    fn set_level(&mut self, level: u32) {
-        self.inner.set_level(level);
-    }
-
-    fn live_view(&mut self) -> Result<Option<LiveView>> {
-        self.inner.live_view()
-    }
-
-    fn contact_overflow(&self) -> Result<u64> {
-        self.inner.contact_overflow()
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {

@@ -2,7 +2,6 @@
 
 use super::LatentDraw;
 use crate::container::{Section, SectionError};
-use crate::env::live_view::LiveView;
 use crate::env::{EnvSpec, ObservationSpec, Transition, VecEnv};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::advance_latents::{Params, launch, twin};
@@ -129,8 +128,12 @@ impl VecEnv for LatentEnv {
         &self.spec
     }
 
-    fn rest_action(&self) -> Vec<f32> {
-        self.inner.rest_action()
+    fn inner(&self) -> Option<&dyn VecEnv> {
+        Some(&*self.inner)
+    }
+
+    fn inner_mut(&mut self) -> Option<&mut dyn VecEnv> {
+        Some(&mut *self.inner)
     }
 
     fn observe(&mut self, out: &mut Array, at: usize) {
@@ -170,22 +173,6 @@ impl VecEnv for LatentEnv {
 
     fn stats(&mut self, out: &mut Array) {
         self.inner.stats(out);
-    }
-
-    fn row_stats(&self) -> Result<Vec<f32>> {
-        self.inner.row_stats()
-    }
-
-    fn set_level(&mut self, level: u32) {
-        self.inner.set_level(level);
-    }
-
-    fn live_view(&mut self) -> Result<Option<LiveView>> {
-        self.inner.live_view()
-    }
-
-    fn contact_overflow(&self) -> Result<u64> {
-        self.inner.contact_overflow()
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {

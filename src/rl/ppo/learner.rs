@@ -1,6 +1,7 @@
 //! The policy at work: it acts, and learns from what came of it.
 
 use super::Ppo;
+use super::adopt_actor::adopt_actor;
 use super::batch::Batch;
 use super::loss::{Diversity, LossCoefficients, PpoLoss, SUMS};
 use crate::container::{Section, SectionError};
@@ -9,7 +10,7 @@ use crate::gpu::{Array, Device};
 use crate::kernels::learn::rollout_moments::scale;
 use crate::kernels::learn::{adapt_lr, sample_action};
 use crate::kernels::rng::{index_below, permutation, random4};
-use crate::nn::{ActorCritic, Adam, Engine, Network, Policy, RunningMeanStd, rows};
+use crate::nn::{ActorCritic, Adam, Engine, Policy, RunningMeanStd, rows};
 use crate::rl::gae::{Bootstrap, RewardSource, gae};
 use crate::rl::rollout::Rollout;
 use crate::rl::sample_action::sample_action;
@@ -147,12 +148,12 @@ impl PpoLearner {
         })
     }
 
-    /// The same learner, whose latents are to lead to different actions.
+    /// Asks for different actions under different latents.
     pub fn with_diversity(self, diversity: Diversity) -> Self {
         PpoLearner { diversity, ..self }
     }
 
-    /// The same learner whose rewards of task and style, if it has both, are weighed so.
+    /// Weighs the rewards of task and style by a rule, if there are both.
     pub fn with_task_weight(mut self, weight: TaskWeight) -> Self {
         let wanted = [RewardSource::Task, RewardSource::Style];
         if wanted.iter().all(|source| self.sources.contains(source)) {
@@ -578,42 +579,6 @@ impl PpoLearner {
         self.weigh(iteration.loss("style_reward"));
         Ok(iteration)
     }
-}
-
-/// Copies the parameters of an actor into one whose observation begins as the other's, and goes on: what
-/// else it sees does not matter at first.
-///
-/// # Errors
-/// Their hidden layers or actions differ.
-fn adopt_actor(
-    from: &Network,
-    flat: &[f32],
-    to: &Network,
-    parameters: &mut [f32],
-) -> Result<(), SectionError> {
-    let widths = |network: &Network| -> Vec<usize> {
-        let layers = network.layers().iter();
-        layers.map(|params| params.layer.filters()).collect()
-    };
-    let (seen, sees) = (from.observation(), to.observation());
-    let fits = seen.grid.is_none() && sees.grid.is_none() && seen.vector <= sees.vector;
-    if !fits || widths(from) != widths(to) {
-        return Err(SectionError(format!(
-            "its policy of {} observations and layers of {:?} does not fit one of {} and {:?}",
-            seen.dim(),
-            widths(from),
-            sees.dim(),
-            widths(to)
-        )));
-    }
-    for (from, to) in from.layers().iter().zip(to.layers()) {
-        let weights = &flat[from.weights()];
-        let own = &mut parameters[to.weights()];
-        own.fill(0.0);
-        own[..weights.len()].copy_from_slice(weights);
-        parameters[to.biases()].copy_from_slice(&flat[from.biases()]);
-    }
-    Ok(())
 }
 
 impl Algorithm for PpoLearner {

@@ -3,6 +3,7 @@
 //! [`Ppo`] holds what may be chosen, [`loss`] is the objective of a sample, [`learner`] lets the
 //! policy act and improves it.
 
+mod adopt_actor;
 mod batch;
 pub mod learner;
 pub mod loss;

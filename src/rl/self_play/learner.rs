@@ -43,9 +43,7 @@ impl SelfPlayLearner {
             bail!("a learner by self-play takes environments of self-play");
         }
         let spec = envs.spec();
-        let mut rest = envs.rest_action();
-        rest.resize(spec.action, 0.0);
-        let scripted = Opponent::Scripted(rest);
+        let scripted = Opponent::at_rest(envs.rest_action(), spec.action);
         let mut learner = SelfPlayLearner {
             pool: Pool::new(config, Vec::new()),
             config: *config,

@@ -15,6 +15,13 @@ pub enum Opponent {
 }
 
 impl Opponent {
+    /// Who repeats the action at rest of environments with actions of so many numbers: see
+    /// [`VecEnv::rest_action`](crate::env::VecEnv::rest_action).
+    pub fn at_rest(mut rest: Vec<f32>, action: usize) -> Opponent {
+        rest.resize(action, 0.0);
+        Opponent::Scripted(rest)
+    }
+
     /// Actions `[rows][action]` for observations `[rows][observation]`, in the environments of these numbers in the
     /// whole batch: what is drawn depends on them, `seed` and `step_counter` alone.
     pub fn act(&self, observation: &[f32], envs: &[u32], seed: u32, step_counter: u32) -> Vec<f32> {

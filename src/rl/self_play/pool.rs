@@ -204,9 +204,9 @@ impl Pool {
 pub struct Opponents(Vec<PoolMember>);
 
 impl Opponents {
-    /// One who repeats an action: the first of every pool.
-    pub fn scripted(action: Vec<f32>) -> Opponents {
-        Opponents(vec![PoolMember::new(0, Opponent::Scripted(action))])
+    /// One alone: the first of every pool.
+    pub fn only(first: Opponent) -> Opponents {
+        Opponents(vec![PoolMember::new(0, first)])
     }
 
     /// All of them.

@@ -1,8 +1,8 @@
 //! Environments of two agents as environments of one, who plays against opponents.
 
+use super::Opponent;
 use super::pool::{BoutResult, Opponents};
 use crate::container::{Section, SectionError};
-use crate::env::live_view::LiveView;
 use crate::env::termination::RUNNING;
 use crate::env::{EnvSpec, Transition, VecEnv};
 use crate::gpu::{Array, Device};
@@ -74,7 +74,10 @@ impl SelfPlayEnv {
         };
         let observation = spec.observation.dim();
         let mut envs = SelfPlayEnv {
-            opponents: Arc::new(Opponents::scripted(at_rest(&*inner))),
+            opponents: Arc::new(Opponents::only(Opponent::at_rest(
+                inner.rest_action(),
+                spec.action,
+            ))),
             bouts: Vec::new(),
             results: Ok(Vec::new()),
             sums: vec![0.0; names.len()],
@@ -200,20 +203,22 @@ impl SelfPlayEnv {
     }
 }
 
-/// An action at rest, `[action]`.
-fn at_rest(envs: &dyn VecEnv) -> Vec<f32> {
-    let mut action = envs.rest_action();
-    action.resize(envs.spec().action, 0.0);
-    action
-}
-
 impl VecEnv for SelfPlayEnv {
     fn spec(&self) -> &EnvSpec {
         &self.spec
     }
 
-    fn rest_action(&self) -> Vec<f32> {
-        self.inner.rest_action()
+    fn inner(&self) -> Option<&dyn VecEnv> {
+        Some(&*self.inner)
+    }
+
+    fn inner_mut(&mut self) -> Option<&mut dyn VecEnv> {
+        Some(&mut *self.inner)
+    }
+
+    fn row_stats(&self) -> Result<Vec<f32>> {
+        // The inner rows are of both agents.
+        Ok(Vec::new())
     }
 
     fn observe(&mut self, out: &mut Array, at: usize) {
@@ -241,18 +246,6 @@ impl VecEnv for SelfPlayEnv {
         self.row_stats.fill(0.0);
         *out = Array::from_slice(&self.device, &self.sums);
         self.sums.fill(0.0);
-    }
-
-    fn set_level(&mut self, level: u32) {
-        self.inner.set_level(level);
-    }
-
-    fn live_view(&mut self) -> Result<Option<LiveView>> {
-        self.inner.live_view()
-    }
-
-    fn contact_overflow(&self) -> Result<u64> {
-        self.inner.contact_overflow()
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {
