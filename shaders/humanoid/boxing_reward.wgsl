@@ -5,7 +5,7 @@
 // dynamics    see `smooth_dynamics`: the velocities of the same state, from `velocities_at` on
 // forces      [(bodies + 8) * 3][envs], N: on bodies, then of each fighter's right and left hand on the other's torso
 //             and head
-// task_state  [..][envs], see `boxing`; `joint_efforts` has taken the step in
+// task_state  [..][envs], see `boxing`; `joint_accelerations` has taken the step in
 // reward      [rows], from `at` on
 // measures    [6][rows]: impulse on the opponent, N s; that part of it from behind; a knock-down; out of the arena;
 //             near the opponent; the beginning of a clinch
@@ -37,9 +37,9 @@ struct Params {
     min_pelvis: f32,
     min_body: f32,         // of all but the feet
     fall_ends: u32,        // 1 if a fall ends the bout
-    facing: u32,           // 1 if facing is rewarded, and asked for where a fall is
-    clinch_steps: u32,     // after which fighters at each other are in a clinch
-    clinch: f32,           // m; so near they are at each other
+    facing: u32,           // 1 if facing is rewarded, and required for the reward of a fall
+    clinch_steps: u32,     // within `clinch` after which fighters are in one
+    clinch: f32,           // m, the distance of one
     arena: f32,            // m, half its width
     near: f32,             // m; nearer than this is near
     speed: f32,            // wanted, m/s
@@ -79,7 +79,7 @@ var<private> fallen: vec2<bool>;
 var<private> left: vec2<bool>;     // the arena
 var<private> given: vec2f;         // N
 
-fn bound(count: u32) -> u32 { return select(0u, count, task_end[env] <= FAILED + LEADS); }
+fn bound(count: u32) -> u32 { return select(0u, count, task_end[2u * env] <= FAILED + LEADS); }
 
 fn carried(field: u32) -> f32 { return task_state[field * params.envs + env]; }
 fn carry(field: u32, value: f32) { task_state[field * params.envs + env] = value; }
@@ -139,7 +139,7 @@ fn near_reward(me: u32) -> f32 {
     let faces = select(0.0, facing(alignment, mutual), params.facing == 1u);
     let falls = select(0.0, fall(up), mutual || params.facing == 0u);
     let dense = params.close_weight * closest(me) + params.facing_weight * faces + params.fall_weight * falls
-        - params.energy_weight * energy(distance_apart, carried(EFFORT + me));
+        - params.energy_weight * energy(distance_apart, carried(SQUARED_ACCELERATION + me));
     return params.damage_weight * params.damage_scale * damage(given[me], given[other], params.damage_taken)
         + params.dense * dense - params.penalty_weight * penalty(fallen[me], left[me]);
 }

@@ -1,14 +1,14 @@
-// Latents of agents grow older by a step; those whose time is over, or whose episode is, are drawn anew. What
+// Latents of agents are kept for their time; those whose time is over, or whose episode is, are drawn anew. What
 // an ended episode observed last gets the latent of its time. One invocation a row.
 //
-// dims               [3]                  numbers of a latent; of the inner observation; centres of latents, 0 if
-//                                         they are any
+// dims               [3]                  numbers of a latent; of the inner observation; centres: with 0 a latent has
+//                                         any direction
 // termination        [steps][rows]
 // centres            [centres][1 + latent]   share of this centre and all before it, then the centre
 // inner_final        [final_steps][rows][inner]
 // final_observation  [final_steps][rows][inner + latent]
 // latents            [rows][latent]
-// ages               [rows]               steps for which a latent is still kept
+// steps_left         [rows]               steps for which a latent is still kept
 
 #import rng
 #import termination
@@ -32,7 +32,7 @@ struct Params {
 @group(0) @binding(3) var<storage, read> inner_final: array<f32>;
 @group(0) @binding(4) var<storage, read_write> final_observation: array<f32>;
 @group(0) @binding(5) var<storage, read_write> latents: array<f32>;
-@group(0) @binding(6) var<storage, read_write> ages: array<u32>;
+@group(0) @binding(6) var<storage, read_write> steps_left: array<u32>;
 @group(0) @binding(7) var<uniform> params: Params;
 
 const STREAM = 0x4c415445u;
@@ -53,13 +53,13 @@ fn advance_latents(@builtin(global_invocation_id) id: vec3u) {
             final_observation[last * (inner + dim) + inner + i] = latents[row * dim + i];
         }
     }
-    if (params.opening == 0u && !ended && ages[row] > 1u) {
-        ages[row] -= 1u;
+    if (params.opening == 0u && !ended && steps_left[row] > 1u) {
+        steps_left[row] -= 1u;
         return;
     }
     let key = params.first + row;
     let bits = random4(params.seed, key, params.step_counter, STREAM);
-    ages[row] = params.least + index_below(bits.x, params.most - params.least + 1u);
+    steps_left[row] = params.least + index_below(bits.x, params.most - params.least + 1u);
     // The centre whose share the lot falls into.
     let lot = uniform01(bits.y);
     var centre = 0u;

@@ -1,10 +1,9 @@
 // The diversity loss of every row and its gradient: two latents are to lead to actions as far apart as they
 // are. One invocation a row; adds to the gradients that ppo_loss has written.
 //
-// dims          [4]            numbers of an observation, whose last are the latent; where log_std begins;
-//                              numbers of an action; values
-// samples       [..][width]    observation, .., then the mean action [action] under another latent, and that
-//                              latent [latent]
+// dims          [4]            numbers of an observation; where log_std begins; numbers of an action; values
+// samples       [..][width]    .., then the mean action [action] under another latent, the agent's own latent
+//                              [latent], and that other one [latent]
 // outputs       [rows][action] mean, then those of other networks
 // output_grads  of the same form
 
@@ -34,8 +33,9 @@ fn diversity_loss(@builtin(global_invocation_id) id: vec3u) {
     if (row >= params.rows) { return; }
     let actions = dims[2];
     let sample = (params.start + row) * params.width;
-    let own = sample + dims[0] - params.latent;
     let other = sample + params.width - params.latent;
+    let own = other - params.latent;
+    let other_mean = own - actions;
     var squares = vec2f(0.0);
     var product = 0.0;
     for (var i = 0u; i < params.latent; i++) {
@@ -47,13 +47,13 @@ fn diversity_loss(@builtin(global_invocation_id) id: vec3u) {
     let apart = 0.5 - 0.5 * product / lengths + LEAST;
     var difference = 0.0;
     for (var i = 0u; i < actions; i++) {
-        let change = outputs[row * actions + i] - samples[other - actions + i];
+        let change = outputs[row * actions + i] - samples[other_mean + i];
         difference += change * change / f32(actions);
     }
     let missing = 1.0 - difference / apart;
     let slope = -8.0 * params.weight * missing / (apart * f32(actions));
     for (var i = 0u; i < actions; i++) {
-        let change = outputs[row * actions + i] - samples[other - actions + i];
+        let change = outputs[row * actions + i] - samples[other_mean + i];
         output_grads[row * actions + i] += slope * change;
     }
 }

@@ -1,7 +1,8 @@
 // Takes a step of a low level into the decision of a high level that it is part of; steps after an episode's end
 // do not count. One invocation a row.
 //
-// reward, style_reward, termination, group  [rows] of the step
+// reward, style_reward, termination, situation  [rows] of the step; `situation` is Transition::group, whose name WGSL
+//                                           reserves
 // decision_...                              the decision's from the index `at` on: a share of the sum of rewards,
 //                                           the mean of style rewards, how it ended, the group of the last step
 //                                           that counts

@@ -45,7 +45,7 @@ fn nearness(distance: f32) -> f32 {
 }
 
 // 19
-fn energy(distance: f32, effort: f32) -> f32 { return nearness(distance) * effort; }
+fn energy(distance: f32, squared_acceleration: f32) -> f32 { return nearness(distance) * squared_acceleration; }
 
 // Of who has fallen, and of who has left the arena.
 fn penalty(fallen: bool, out: bool) -> f32 { return select(0.0, 1.0, fallen) + select(0.0, 1.0, out); }

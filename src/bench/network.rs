@@ -176,7 +176,6 @@ impl<'a> Pass<'a> {
             values: networks.critic.outputs(),
             log_std: networks.log_std(),
             old_log_std: &self.old_log_std,
-            observation: networks.actor.observation().dim(),
             diversity: Diversity::default(),
             coefficients: LossCoefficients {
                 clip: 0.2,

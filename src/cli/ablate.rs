@@ -76,7 +76,7 @@ impl Ablate {
         let mut progress = Progress::new(&config);
         let outcomes = comparison.run(self.seeds, interrupted, &mut progress)?;
         drop(progress);
-        tell(&comparison, outcomes.as_deref());
+        report_outcomes(&comparison, outcomes.as_deref());
         Ok(())
     }
 }
@@ -97,13 +97,14 @@ fn contestants<'a>(
             task: task.with_choices(&config)?,
             config,
             start,
+            body_steps: 1,
         })
     });
     contestant.collect()
 }
 
 /// Says what came of a comparison.
-pub fn tell(comparison: &Comparison, outcomes: Option<&[Outcome]>) {
+pub fn report_outcomes(comparison: &Comparison, outcomes: Option<&[Outcome]>) {
     match outcomes {
         Some(outcomes) => show!("{}", comparison.summary(outcomes)),
         None => say!("go on with the same command"),

@@ -85,7 +85,7 @@ impl Bench {
 }
 
 /// Refuses impossible files before minutes of measuring are lost.
-fn writable(file: &Path) -> Result<()> {
+pub fn writable(file: &Path) -> Result<()> {
     let folder = match file.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),

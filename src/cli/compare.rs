@@ -1,7 +1,7 @@
 //! `footwork compare`.
 
 use super::Usage;
-use super::ablate::tell;
+use super::ablate::report_outcomes;
 use super::progress::Progress;
 use super::train::{Choices, Opened, on_interrupt};
 use anyhow::Result;
@@ -10,7 +10,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use footwork::rl::ase::STEPS_PER_DECISION;
 use footwork::train::comparison::{Comparison, Contestant};
 use footwork::train::config::Config;
-use footwork::train::task::{Measure, TaskEntry};
+use footwork::train::task::TaskEntry;
 use footwork::train::tasks::{REGISTRY, find};
 use std::path::PathBuf;
 
@@ -34,31 +34,6 @@ pub struct Compare {
     out: Option<PathBuf>,
 }
 
-const MEASURES: &[Measure] = &[
-    Measure::percent("survival %", "survival"),
-    Measure::percent("by a fist %", "fist_rate"),
-    Measure::seconds("time s", "time_to_hit_mean_s"),
-    Measure::percent("boxing near %", "boxing_share"),
-    Measure {
-        title: "from recordings m",
-        name: "dtw_m",
-        unit: 1.0,
-        digits: 3,
-    },
-    Measure {
-        title: "power W",
-        name: "power_w",
-        unit: 1.0,
-        digits: 0,
-    },
-    Measure {
-        title: "facing error deg",
-        name: "facing_error_deg",
-        unit: 1.0,
-        digits: 1,
-    },
-];
-
 fn names() -> PossibleValuesParser {
     let tasks = REGISTRY.iter().filter(|entry| entry.steering.is_some());
     PossibleValuesParser::new(tasks.map(|entry| PossibleValue::new(entry.name).help(entry.about)))
@@ -70,38 +45,46 @@ impl Compare {
             return Err(Usage("--seeds must be from 1 to 100".into()).into());
         }
         let entry = find(&self.what)?;
+        let Some(steering) = &entry.steering else {
+            return Err(Usage(format!("`{}` steers no low level", entry.name)).into());
+        };
         let interrupted = on_interrupt()?;
         let start = self.choices.start()?;
-        let [mut amp, mut ase] = self.configurations(entry)?;
-        let [direct, steered] = [Opened::new(entry, &mut amp)?, Opened::new(entry, &mut ase)?];
+        let [mut acting, mut steered] = self.configurations(entry)?;
+        let [direct, high] = [
+            Opened::new(entry, &mut acting)?,
+            Opened::new(entry, &mut steered)?,
+        ];
         let out = format!("runs/compare-{}", entry.name).into();
         let out = self.out.unwrap_or(out);
-        let mut progress = Progress::new(&amp);
+        let mut progress = Progress::new(&acting);
         let comparison = Comparison {
             title: "comparison",
             entry,
             contestants: vec![
                 Contestant {
-                    name: "amp",
-                    config: amp,
+                    name: "direct",
+                    config: acting,
                     task: direct.task,
                     start: start.as_ref(),
+                    body_steps: 1,
                 },
                 Contestant {
-                    name: "ase",
-                    config: ase,
-                    task: steered.task,
+                    name: "steered",
+                    config: steered,
+                    task: high.task,
                     start: None,
+                    body_steps: STEPS_PER_DECISION as u64,
                 },
             ],
-            measures: MEASURES,
-            rates: &["hit", "fall"],
+            measures: steering.measures,
+            rates: steering.rates,
             device: &direct.device,
             out: &out,
         };
         let outcomes = comparison.run(self.seeds, interrupted, &mut progress)?;
         drop(progress);
-        tell(&comparison, outcomes.as_deref());
+        report_outcomes(&comparison, outcomes.as_deref());
         Ok(())
     }
 

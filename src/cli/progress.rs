@@ -39,6 +39,13 @@ impl Progress {
 }
 
 impl Observer for Progress {
+    fn begins(&mut self, config: &Config) {
+        (self.steps, self.max_time_s) = (config.steps, config.max_time_s);
+        if let Some(bar) = &self.bar {
+            bar.set_length(config.steps);
+        }
+    }
+
     fn noted(&mut self, note: &str) {
         match &self.bar {
             Some(bar) => bar.suspend(|| tell!("{note}")),

@@ -1,6 +1,8 @@
 //! `footwork tournament`.
 
 use super::Usage;
+#[cfg(feature = "report")]
+use super::bench::writable;
 use super::run::{Moved, Run};
 use super::say::{say, show, tell};
 use anyhow::Result;
@@ -17,6 +19,12 @@ pub struct Tournament {
     /// Let all checkpoints of a run fight, but for the best, which is one of them; may be given several times
     #[arg(long, value_name = "RUN")]
     checkpoints: Vec<PathBuf>,
+    /// Where the runs' motion is now, if it has been moved
+    #[arg(long, value_name = "DIR|FILE")]
+    data: Option<PathBuf>,
+    /// Where their low level is now, if it has been moved
+    #[arg(long, value_name = "RUN")]
+    skills: Option<PathBuf>,
     /// Bouts between any two, half of them in either corner
     #[arg(
         long,
@@ -47,11 +55,19 @@ impl Tournament {
             return Err(Usage("--bouts must be an even number from 2 to 100000".into()).into());
         }
         let mut field = Field::default();
+        #[cfg(feature = "report")]
+        if let Some(path) = &self.plot {
+            drawable(path)?;
+        }
+        let moved = Moved {
+            data: self.data.as_deref(),
+            skills: self.skills.as_deref(),
+        };
         for run in &self.players {
-            field.enter(run, false)?;
+            field.enter(run, moved, false)?;
         }
         for run in &self.checkpoints {
-            field.enter(run, true)?;
+            field.enter(run, moved, true)?;
         }
         let (Some(Bouts { task, still }), 2..) = (field.bouts, field.players.len()) else {
             let why = "a tournament takes two checkpoints at least: name more runs, or give --checkpoints";
@@ -67,13 +83,13 @@ impl Tournament {
             count * (count - 1) / 2 * self.bouts
         );
         let found = play(&task, &field.players, self.bouts / 2);
-        #[cfg(feature = "report")]
-        if let Some(path) = &self.plot {
-            draw(path, &found)?;
-        }
         match self.json {
             true => say!("{}", serde_json::to_string(&found)?),
             false => show!("{}", found.summary()),
+        }
+        #[cfg(feature = "report")]
+        if let Some(path) = &self.plot {
+            draw(path, &found)?;
         }
         Ok(())
     }
@@ -81,11 +97,7 @@ impl Tournament {
 
 impl Field {
     /// Lets a run's last checkpoint or a given one fight, or all of the run's.
-    fn enter(&mut self, path: &Path, all: bool) -> Result<()> {
-        let moved = Moved {
-            data: None,
-            skills: None,
-        };
+    fn enter(&mut self, path: &Path, moved: Moved, all: bool) -> Result<()> {
         let run = Run::open(path, moved)?;
         let Some(bouts) = run.task.bouts() else {
             let (path, task) = (path.display(), &run.config.task.name);
@@ -115,6 +127,15 @@ fn name(checkpoint: &Path) -> String {
     let run = whole.ancestors().nth(2).and_then(Path::file_name);
     let names = [run, whole.file_stem()].map(|name| name.unwrap_or_default().to_string_lossy());
     names.join("/")
+}
+
+/// Refuses a picture that could not be written, before anybody fights.
+#[cfg(feature = "report")]
+fn drawable(path: &Path) -> Result<()> {
+    if path.extension().is_none_or(|ending| ending != "png") {
+        return Err(Usage("--plot must end in .png".into()).into());
+    }
+    writable(path)
 }
 
 #[cfg(feature = "report")]

@@ -29,8 +29,8 @@ pub struct Transition<'a> {
 }
 
 /// Environments that are stepped together, with same-step reset (Gymnasium's `SAME_STEP`): a step that
-/// ends an episode begins the next one, and the next observation is of that. Being [`Any`], a batch's parts can be told
-/// apart by who learns in them.
+/// ends an episode begins the next one, and the next observation is of that. Being [`Any`], the parts of a batch can
+/// be had back as the type that they are of.
 pub trait VecEnv: Any + Send {
     /// The dimensions of the batch.
     fn spec(&self) -> &EnvSpec;

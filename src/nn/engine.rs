@@ -114,9 +114,9 @@ impl Engine {
 
     /// Adds the gradient of a penalty to `gradient`: `weight` times the mean, over rows, of the squared norm
     /// of the gradient, with respect to its observation, of the mean of a network's first so many `heads`
-    /// (Mescheder, Geiger and Nowozin 2018). Adds the sum of these squared norms to the first of `sums`. The network's hidden layers
-    /// are dense ReLUs, whose second derivative is zero; the gradient is therefore exact. The rows are a
-    /// range of `samples`, `[..][width]`, which begin with observations.
+    /// (Mescheder, Geiger and Nowozin 2018). Adds the sum of these squared norms to the first of `sums`. The
+    /// network's hidden layers are dense ReLUs, whose second derivative is zero; the gradient is therefore exact. The
+    /// rows are a range of `samples`, `[..][width]`, which begin with observations.
     ///
     /// # Panics
     /// On a GPU, of an engine that was not made by [`Engine::layerwise`].

@@ -45,7 +45,8 @@ pub enum WeightRule {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TaskWeightConfig {
-    /// How the weight is found. By [`WeightRule::Pd`] lambda starts at the ratio of the fixed weights.
+    /// How the weight is found. By [`WeightRule::Pd`] lambda starts at the ratio of the fixed weights, as far as
+    /// its range lets it.
     pub rule: WeightRule,
     /// Mean style reward of a step that the rule aims at. 0 to find it: of a run that begins with another, 80 %
     /// of the style reward of that one's last updates, or the reference that it was itself trained by; else
@@ -70,8 +71,9 @@ impl TaskWeight {
 
     /// As it is chosen, for fixed weights of this ratio, task to style.
     pub fn new(config: &TaskWeightConfig, lambda: f64) -> Self {
+        let [least, most] = LAMBDA_RANGE;
         let rule = || PdRule {
-            lambda,
+            lambda: lambda.clamp(least, most),
             error: 0.0,
             reference: match config.style_reference > 0.0 {
                 true => RunningMean::known(config.style_reference),
@@ -311,9 +313,9 @@ mod tests {
     #[test]
     fn it_stays_in_its_range() {
         let [least, most] = LAMBDA_RANGE;
-        // It may start outside.
+        // It starts there, too.
         let mut weight = pd(REFERENCE, 9.0);
-        assert_eq!(weight.metrics()[0], ("task_weight", 0.9));
+        assert_eq!(weight.metrics()[0], ("task_weight", 0.75));
         let played = play(&mut weight, again(4.0, 200));
         assert!(played.iter().all(|&lambda| lambda == most));
         assert_eq!(play(&mut weight, again(0.0, 200)).pop(), Some(least));

@@ -21,14 +21,14 @@ pub struct BodyPolicy {
 
 /// What a discriminator says of episodes, of a step on average.
 pub struct StyleReport {
-    /// Its reward.
+    /// The discriminator's reward.
     pub style: f64,
     /// The cosine between the latent and what the encoder finds, if there is one.
     pub encoder_cosine: Option<f64>,
 }
 
 impl BodyPolicy {
-    /// Those of a checkpoint of a run of `task` with this configuration.
+    /// Reads both from a checkpoint of a run of `task` with this configuration.
     ///
     /// # Errors
     /// The checkpoint is not of such a run.
@@ -67,8 +67,9 @@ impl BodyPolicy {
                 for row in (0..count).filter(|&row| running[row]) {
                     let (now, latent) = (moment(envs, row), &state.latents[row * dim..][..dim]);
                     let moments = [&before[row][..], &now];
-                    style += f64::from(discriminator.reward(moments, latent));
-                    if let Some(found) = discriminator.cosine(moments, latent) {
+                    let (reward, found) = discriminator.reward_and_cosine(moments, latent);
+                    style += f64::from(reward);
+                    if let Some(found) = found {
                         *cosine.get_or_insert(0.0) += f64::from(found);
                     }
                     steps += 1;

@@ -30,7 +30,7 @@ pub struct Comparison<'a> {
     pub measures: &'static [Measure],
     /// Rates of episodes in `metrics.jsonl` whose curves are kept.
     pub rates: &'static [&'static str],
-    /// Where all are trained.
+    /// The device that all are trained on.
     pub device: &'a Device,
     /// Folder of all runs.
     pub out: &'a Path,
@@ -46,15 +46,17 @@ pub struct Contestant<'a> {
     pub task: Box<dyn Task>,
     /// What it begins with, if not from nothing.
     pub start: Option<&'a Checkpoint>,
+    /// Steps of the environments within in one step: more than 1 where a policy steers a low level.
+    pub body_steps: u64,
 }
 
 /// One contestant's training from one seed.
 pub struct Outcome {
     /// Name of the contestant.
-    pub variant: &'static str,
+    pub contestant: &'static str,
     /// Seed of the training.
     pub seed: u32,
-    /// Its updates.
+    /// Its updates; steps are those of the environments within.
     pub rows: Vec<UpdateMetrics>,
     /// What the evaluation episodes found at its end.
     pub evaluation: Evaluation,
@@ -126,16 +128,20 @@ impl Comparison<'_> {
                 device: self.device,
                 start: contestant.start,
             };
+            observer.begins(&config);
             train(training, from, interrupted, observer)?;
         }
         if interrupted.load(Ordering::Relaxed) {
             return Ok(None);
         }
         let policy = Checkpoint::load(&run.last()?)?.policy;
+        let mut rows = metrics::read(&run.metrics_path(), config.steps + config.batch())?.rows;
+        let each = contestant.body_steps;
+        rows.iter_mut().for_each(|row| row.steps *= each);
         Ok(Some(Outcome {
-            variant: contestant.name,
+            contestant: contestant.name,
             seed,
-            rows: metrics::read(&run.metrics_path(), config.steps + config.batch())?.rows,
+            rows,
             evaluation: task.evaluate(&policy, EPISODES)?,
         }))
     }
@@ -188,12 +194,12 @@ impl Comparison<'_> {
     fn draw(&self, outcomes: &[Outcome]) -> Result<()> {
         use super::figures::points;
         use crate::report::ablation::{Method, draw};
-        let of = |name: &'static str| outcomes.iter().filter(move |o| o.variant == name);
+        let of = |name: &'static str| outcomes.iter().filter(move |o| o.contestant == name);
         let methods = self.contestants.iter().enumerate();
-        let methods = methods.map(|(colour, variant)| Method {
-            name: variant.name.to_string(),
+        let methods = methods.map(|(colour, contestant)| Method {
+            name: contestant.name.to_string(),
             colour,
-            seeds: of(variant.name)
+            seeds: of(contestant.name)
                 .map(|outcome| points(&outcome.rows))
                 .collect(),
         });
@@ -208,10 +214,10 @@ impl Comparison<'_> {
         let measures = self.measures;
         let mut titles = vec!["variant", "seeds", "success %", "of each seed"];
         titles.extend(measures.iter().map(|measure| measure.title));
-        let row = |variant: &Contestant| {
+        let row = |contestant: &Contestant| {
             let found = outcomes
                 .iter()
-                .filter(|outcome| outcome.variant == variant.name);
+                .filter(|outcome| outcome.contestant == contestant.name);
             let found: Vec<&Evaluation> = found.map(|outcome| &outcome.evaluation).collect();
             let mean = |of: &dyn Fn(&Evaluation) -> f64| {
                 found.iter().map(|one| of(one)).sum::<f64>() / found.len().max(1) as f64
@@ -220,13 +226,14 @@ impl Comparison<'_> {
                 .iter()
                 .map(|one| format!("{:.1}", 100.0 * one.success));
             let mut row = vec![
-                variant.name.to_string(),
+                contestant.name.to_string(),
                 found.len().to_string(),
                 format!("{:.1}", 100.0 * mean(&|one| one.success)),
                 each.collect::<Vec<_>>().join(" "),
             ];
             row.extend(measures.iter().map(|measure| {
-                let value = measure.unit * mean(&|one| one.measure(measure.name));
+                // Not -0.
+                let value = measure.unit * mean(&|one| one.measure(measure.name)) + 0.0;
                 format!("{value:.*}", measure.digits)
             }));
             row
@@ -244,7 +251,7 @@ impl Comparison<'_> {
         for outcome in outcomes {
             let found = &outcome.evaluation;
             let first = [
-                outcome.variant.to_string(),
+                outcome.contestant.to_string(),
                 outcome.seed.to_string(),
                 found.episodes.to_string(),
                 found.success.to_string(),
@@ -267,7 +274,7 @@ impl Comparison<'_> {
         for outcome in outcomes {
             for row in &outcome.rows {
                 let mut line = vec![
-                    outcome.variant.to_string(),
+                    outcome.contestant.to_string(),
                     outcome.seed.to_string(),
                     row.steps.to_string(),
                     row.wall_s.to_string(),

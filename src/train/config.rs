@@ -14,7 +14,7 @@ use crate::rl::ase::Ase;
 use crate::rl::ppo::Ppo;
 use crate::rl::self_play::SelfPlay;
 use crate::rl::task_weight::TaskWeightConfig;
-pub(super) use check::within;
+pub(super) use check::{check_amp, check_ase, within};
 pub(super) use overlay::nearest;
 use overlay::{Mistake, different, line_of, names, overlay};
 use serde::de::DeserializeOwned;
@@ -84,10 +84,10 @@ pub struct Config {
     /// Those of a discriminator, for tasks that have one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub amp: Option<Amp>,
-    /// Those of latents, for the task that has them.
+    /// The choices of latents, for the task that has them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ase: Option<Ase>,
-    /// Those of self-play, for the task that is learned so.
+    /// The choices of self-play, for the task that is learned so.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub self_play: Option<SelfPlay>,
     /// How the weights of the rewards of task and style are found, for tasks that have both.
@@ -109,7 +109,7 @@ pub struct TaskPreset {
     pub amp: Option<Amp>,
     /// Those of latents, if the task has any.
     pub ase: Option<Ase>,
-    /// Those of self-play, if the task is learned so.
+    /// The choices of self-play, if the task is learned so.
     pub self_play: Option<SelfPlay>,
     /// Environment steps of a training.
     pub steps: u64,

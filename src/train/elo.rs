@@ -1,7 +1,7 @@
 //! Ratings of players from who beat whom.
 
 /// Mean of all ratings.
-pub const START: f64 = 400.0;
+pub const MEAN: f64 = 400.0;
 /// Points between two players of whom one wins ten times as often as the other.
 const SCALE: f64 = 400.0;
 /// Standard errors of an interval that holds the rating in 95 of 100 cases.
@@ -28,7 +28,7 @@ pub fn ratings(scores: &[Vec<f64>]) -> Vec<EloRating> {
     let strengths = strengths(&scores);
     let count = strengths.len();
     let rating = |one: usize| {
-        let elo = START + SCALE * strengths[one].log10();
+        let elo = MEAN + SCALE * strengths[one].log10();
         let information = (0..count).map(|other| {
             let expected = strengths[one] / (strengths[one] + strengths[other]);
             (scores[one][other] + scores[other][one]) * expected * (1.0 - expected)
@@ -89,7 +89,7 @@ mod tests {
         // 17.5 to 2.5 with the draw: odds of 7.
         let found = ratings(&[vec![0.0, 17.0], vec![2.0, 0.0]]);
         assert!((found[0].elo - found[1].elo - 400.0 * 7f64.log10()).abs() < 1e-6);
-        assert!((found[0].elo + found[1].elo - 2.0 * START).abs() < 1e-6);
+        assert!((found[0].elo + found[1].elo - 2.0 * MEAN).abs() < 1e-6);
         assert!(
             found
                 .iter()
@@ -100,11 +100,11 @@ mod tests {
     #[test]
     fn equals_are_rated_alike_and_winners_finitely() {
         let draws = ratings(&vec![vec![5.0; 3]; 3]);
-        assert!(draws.iter().all(|one| (one.elo - START).abs() < 1e-6));
+        assert!(draws.iter().all(|one| (one.elo - MEAN).abs() < 1e-6));
         let sure = ratings(&[vec![0.0, 100.0], vec![0.0, 0.0]]);
         assert!(sure[0].elo.is_finite() && sure[0].elo > sure[1].elo + 800.0);
         let nobody = ratings(&[vec![0.0; 2], vec![0.0; 2]]);
-        assert!(nobody.iter().all(|one| one.elo == START));
+        assert!(nobody.iter().all(|one| one.elo == MEAN));
     }
 
     /// Odds of 4, 2 and 1 against each other, in any order of the players.
@@ -123,7 +123,7 @@ mod tests {
         let other = ratings(&scores([2, 0, 1]));
         for (one, again) in [(0, 1), (1, 2), (2, 0)] {
             assert!((found[one].elo - other[again].elo).abs() < 1e-6);
-            let wanted = START + 400.0 * (strengths[one] / 2.0).log10();
+            let wanted = MEAN + 400.0 * (strengths[one] / 2.0).log10();
             assert!((found[one].elo - wanted).abs() < 1.0, "{found:?}");
         }
     }

@@ -1,7 +1,7 @@
 //! The low level that a high-level policy steers: a run of the task `skills`.
 
 use super::checkpoint::Checkpoint;
-use super::config::{Config, ConfigError};
+use super::config::{Config, ConfigError, check_amp, check_ase};
 use super::run_dir::checkpoint_of;
 use crate::env::EnvSpec;
 use crate::rl::amp::{Amp, FrozenDiscriminator};
@@ -39,13 +39,20 @@ pub fn load(run: &Path) -> Result<FrozenLowLevel> {
     let config: Result<LowLevelConfig, _> = toml::from_str(&header.config);
     let config =
         config.map_err(|error| anyhow!("{path}: its configuration: {}", error.message()))?;
-    let (style, latents) = (header.spec.style, config.ase.rewards().latents);
-    let mut learner = checkpoint.sections.take("learner").unwrap_or_default();
+    check_amp(&config.amp)?;
+    check_ase(&config.ase)?;
+    let widths = [header.spec.style, config.ase.latent];
+    let fits = FrozenLowLevel::check(&checkpoint.policy, widths);
+    fits.map_err(|why| anyhow!("{path} is no low level: {why}"))?;
+    let ([style, _], latents) = (widths, config.ase.rewards().latents);
+    let mut learner = checkpoint.sections.take("learner")?;
     let discriminator = FrozenDiscriminator::load(&config.amp, latents, &mut learner, style)
         .with_context(|| format!("the discriminator of {path} cannot be read"))?;
-    let widths = [style, config.ase.latent];
-    let low_level = FrozenLowLevel::new(checkpoint.policy, discriminator, widths);
-    low_level.map_err(|why| anyhow!("{path} is no low level: {why}"))
+    Ok(FrozenLowLevel::new(
+        checkpoint.policy,
+        discriminator,
+        widths,
+    ))
 }
 
 /// The dimensions of a body's environments under a configuration: those of latents, where it names a low level.

@@ -1,5 +1,6 @@
 //! Somebody who follows a training.
 
+use super::config::Config;
 use super::metrics::UpdateMetrics;
 use super::state::RecentMeans;
 use crate::env::EnvBatch;
@@ -7,6 +8,9 @@ use anyhow::Result;
 
 /// What a training tells while it runs. `()` does not listen.
 pub trait Observer {
+    /// Another training with these choices begins, of several.
+    fn begins(&mut self, _config: &Config) {}
+
     /// The environments are open, and nothing has been played.
     ///
     /// # Errors

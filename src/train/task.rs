@@ -33,8 +33,8 @@ pub struct TaskEntry {
     pub about: &'static str,
     /// The choices to start from.
     pub preset: fn(Preset) -> TaskPreset,
-    /// The choices to start from where the policy steers a low level, of tasks in which it can.
-    pub steering: Option<fn(Preset) -> TaskPreset>,
+    /// What differs where the policy steers a low level, of tasks in which it can.
+    pub steering: Option<Steering>,
     /// Refuses choices of the task that cannot work. Returns the dimensions of the environments.
     pub spec: fn(&Config) -> Result<EnvSpec, ConfigError>,
     /// Whether its data is a motion list.
@@ -43,6 +43,16 @@ pub struct TaskEntry {
     pub load: fn(&Config) -> Result<Loaded>,
     /// Comparisons of variants that `footwork ablate` knows.
     pub ablations: &'static [Ablation],
+}
+
+/// A task whose policy may steer a low level.
+pub struct Steering {
+    /// The choices to start from.
+    pub preset: fn(Preset) -> TaskPreset,
+    /// What `footwork compare` tells besides the success.
+    pub measures: &'static [Measure],
+    /// Rates of episodes in `metrics.jsonl` whose curves it keeps.
+    pub rates: &'static [&'static str],
 }
 
 impl TaskEntry {
@@ -72,8 +82,8 @@ impl TaskEntry {
     }
 
     fn choices(&self, preset: Preset, steers: bool) -> TaskPreset {
-        match self.steering {
-            Some(steering) if steers => steering(preset),
+        match &self.steering {
+            Some(steering) if steers => (steering.preset)(preset),
             _ => (self.preset)(preset),
         }
     }

@@ -10,7 +10,7 @@ use crate::rl::ase::LatentDraw;
 use crate::train::body_episodes::BodyEpisodes;
 use std::f32::consts::PI;
 
-/// Latents that the axes are of where clips have none.
+/// How many latents decide on the axes where clips have none.
 const RANDOM: usize = COMPARED;
 /// Latents all over the disc besides.
 const SPREAD: usize = 2 * COMPARED;

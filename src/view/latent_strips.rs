@@ -15,7 +15,7 @@ use crate::report::ReportError;
 use crate::report::canvas::{Anchor, Canvas, paint, text_width};
 use crate::report::chart::{INK, MUTED};
 use crate::train::body_episodes::BodyEpisodes;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use std::path::Path;
 
 /// Latents that are shown where clips have none.
@@ -88,6 +88,9 @@ pub fn latent_strips(
             words: played.words(shown),
             pictures: pictures?,
         });
+    }
+    if rows.iter().all(|row| row.pictures.is_empty()) {
+        bail!("all episodes are over before {start} s: give an earlier --start");
     }
     Ok(draw(&rows, &times, path)?)
 }

@@ -33,7 +33,7 @@ pub struct BodyViewer {
     transport: Transport,
     camera: Camera,
     extras: BodyExtras,
-    /// Of a policy of skills.
+    /// The panel of a policy of skills.
     skills: Option<SkillsPanel>,
     /// The body that the pointer has hold of, and where the pointer is.
     grip: Option<(usize, Ray)>,

@@ -60,6 +60,10 @@ impl SkillsPanel {
         ui.strong("Skills");
         let chosen = match &self.map {
             Some(map) => disc(ui, map, now),
+            None if self.making.is_none() => {
+                ui.label("The map could not be made.");
+                None
+            }
             None => {
                 ui.horizontal(|ui| {
                     ui.spinner();
@@ -194,7 +198,7 @@ fn legend(ui: &mut Ui, map: &LatentMap) -> Option<Vec<f32>> {
 
 /// The colour of a clip in the legend: one behind the other they are far apart.
 fn colour(clip: Option<usize>) -> Color32 {
-    /// Of a circle of hues: the golden section.
+    /// Part of a circle of hues between two colours: the golden section.
     const BETWEEN: f32 = 0.618_034;
     let Some(clip) = clip else {
         return Color32::from_gray(75);

@@ -53,7 +53,7 @@ fn fighters_learn_by_themselves_and_are_evaluated() {
             "bouts",
             "won",
             "engagement",
-            "knockdowns_per_bout",
+            "knockdowns",
             "from_behind",
             "style",
         ] {

@@ -60,7 +60,8 @@ fn skills_are_steered_and_evaluated() {
         "train punch --skills low {SMALL} --task-weight pd --steps 128 --out pd"
     ));
     for row in rows(&place.path("pd")) {
-        assert!(keys(&row).contains(&"lambda"), "{row}");
+        let lambda = row["lambda"].as_f64().unwrap();
+        assert!((0.5..=3.0).contains(&lambda), "{row}");
     }
     let found = place.done("eval punch --episodes 4 --json").out;
     let found: Value = serde_json::from_str(&found).unwrap();

@@ -44,6 +44,7 @@ struct Case {
     width: usize,
     old_log_std: Vec<f32>,
     coefficients: LossCoefficients,
+    diversity: Diversity,
 }
 
 /// What an engine makes of a case.
@@ -87,7 +88,20 @@ impl Case {
                 std_coefficient: 1.0,
                 inv_count: 1.0 / samples as f32,
             },
+            diversity: Diversity::default(),
         }
+    }
+
+    /// The same samples, which end with the action under another latent, and both latents.
+    fn diverse(mut self, latent: usize, weight: f32) -> Case {
+        let more = ACTION + 2 * latent;
+        let ends = normal(self.count() * more, 13);
+        let rows = self.samples.chunks_exact(self.width);
+        let rows = rows.zip(ends.chunks_exact(more));
+        self.samples = rows.flat_map(|(row, end)| [row, end].concat()).collect();
+        self.width += more;
+        self.diversity = Diversity { latent, weight };
+        self
     }
 
     fn count(&self) -> usize {
@@ -177,8 +191,7 @@ impl Case {
             values: 1,
             log_std: self.networks.log_std(),
             old_log_std,
-            observation: self.networks.actor.observation().dim(),
-            diversity: Diversity::default(),
+            diversity: self.diversity,
             coefficients: self.coefficients,
         }
     }
@@ -417,6 +430,25 @@ fn the_same_bits_on_any_number_of_threads() {
         let one = on(1);
         assert!(one == on(2) && one == on(3));
     }
+}
+
+/// Oracle: the CPU against both engines of a GPU; without the loss the gradient is another, but for the critic's.
+#[test]
+fn actions_under_other_latents_count_on_all_engines() {
+    let case = || Case::new(&dense(&[20], Activation::Relu), plain(), 300);
+    let without = case().on(&Device::Cpu);
+    let case = case().diverse(3, 5.0);
+    let with = case.on(&Device::Cpu);
+    let critic = case.networks.critic.span();
+    assert_eq!(with.gradient[critic.clone()], without.gradient[critic]);
+    assert_eq!(with.sums, without.sums);
+    let actor = case.networks.actor.span();
+    let changes = with.gradient[actor.clone()]
+        .iter()
+        .zip(&without.gradient[actor]);
+    assert!(changes.filter(|(a, b)| (*a - *b).abs() > 1e-4).count() > 20);
+    close(&case.on(&lavapipe()).gradient, &with.gradient, "gpu");
+    close(&case.layerwise().gradient, &with.gradient, "tensors");
 }
 
 #[test]

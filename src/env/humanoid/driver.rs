@@ -42,6 +42,28 @@ impl BodyDriver for Policy {
     }
 }
 
+/// A driver that does the same all the time.
+pub struct RepeatAction {
+    action: Vec<f32>,
+    observation: usize,
+}
+
+impl RepeatAction {
+    /// Who repeats `action`, `[action]`, whatever it sees of so many numbers.
+    pub fn new(action: Vec<f32>, observation: usize) -> Self {
+        RepeatAction {
+            action,
+            observation,
+        }
+    }
+}
+
+impl BodyDriver for RepeatAction {
+    fn act(&self, observation: &[f32], _: &mut DriverState) -> Vec<f32> {
+        self.action.repeat(observation.len() / self.observation)
+    }
+}
+
 impl<F: Fn(&[f32]) -> Vec<f32> + Send + Sync> BodyDriver for F {
     fn act(&self, observation: &[f32], _: &mut DriverState) -> Vec<f32> {
         self(observation)

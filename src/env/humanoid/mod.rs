@@ -3,7 +3,7 @@
 //! by moment, [`punch`] to go up to a box and topple it, [`boxing`] to fight another.
 //!
 //! [`action`] says what an action means, [`driver`] who acts, [`starts`] where episodes begin, [`recorded`] what
-//! recordings are to a task, and [`fidelity`] how motion compares with them.
+//! recordings are to a task, [`fidelity`] how motion compares with them, and [`skills`] what latents lead to.
 
 pub mod action;
 pub mod batch;

@@ -59,9 +59,12 @@ pub fn lifted(model: &Model, q: &[f32]) -> Vec<f32> {
     q
 }
 
-/// Two moments a step apart from every frame of a library's motions on, and behind them the latent of the clip, if
-/// clips have any.
-pub fn demonstrations(library: &MotionLibrary, latents: &[&[f32]]) -> Demonstrations {
+/// Two moments a step apart from every frame of a library's motions on, and behind them a `latent` for the motion and
+/// the window of these numbers; empty if there are none.
+pub fn demonstrations(
+    library: &MotionLibrary,
+    latent: impl Fn(usize, usize) -> Vec<f32> + Sync,
+) -> Demonstrations {
     let model = library.model();
     let mut moments = Vec::new();
     let mut weights = Vec::new();
@@ -74,15 +77,14 @@ pub fn demonstrations(library: &MotionLibrary, latents: &[&[f32]]) -> Demonstrat
         weights.extend(times.iter().map(|_| weight));
         moments.extend(times.into_iter().map(|time| (number, time)));
     }
-    let window = |&(motion, time): &(usize, f32)| {
+    let window = |(number, &(motion, time)): (usize, &(usize, f32))| {
         let moment = |time: f32| {
             let (q, v) = library.at(motion, time);
             observe(model, &q, &v)
         };
-        let latent = latents.get(motion).copied().unwrap_or_default();
-        [&moment(time)[..], &moment(time + DT), latent].concat()
+        [moment(time), moment(time + DT), latent(motion, number)].concat()
     };
-    let windows: Vec<Vec<f32>> = moments.par_iter().map(window).collect();
+    let windows: Vec<Vec<f32>> = moments.par_iter().enumerate().map(window).collect();
     let dim = windows.first().map_or(0, Vec::len);
     Demonstrations::new(dim, windows.concat(), &weights)
 }

@@ -1,7 +1,7 @@
 //! Rewards, measures and end of a step of the task `box`, for both fighters. Shader:
 //! `shaders/humanoid/boxing_reward.wgsl`.
 
-use super::boxing_state::{CLINCH_STEPS, DAMAGE, DOWN, EFFORT, KNOCKDOWNS};
+use super::boxing_state::{CLINCH_STEPS, DAMAGE, DOWN, KNOCKDOWNS, SQUARED_ACCELERATION};
 use super::boxing_terms as terms;
 use super::fallen::{FallRules, has_fallen};
 use super::fighters::{FIGHTERS, FighterBodies, Fighters};
@@ -50,11 +50,11 @@ crate::shader_params! {
         pub min_body: f32,
         /// 1 if a fall ends the bout.
         pub fall_ends: u32,
-        /// 1 if facing is rewarded, and asked for where an opponent's fall is.
+        /// 1 if facing is rewarded, and required for the reward of an opponent that is about to fall.
         pub facing: u32,
-        /// Steps after which fighters that are at each other are in a clinch.
+        /// Steps within `clinch` after which fighters are in one.
         pub clinch_steps: u32,
-        /// Distance below which they are at each other, m.
+        /// Distance of a clinch, m.
         pub clinch: f32,
         /// Half the width of the arena, m.
         pub arena: f32,
@@ -214,8 +214,8 @@ pub fn step(
 ) -> [FighterStep; FIGHTERS] {
     let exchange = Exchange::new(fighters, touching, state, params);
     let near = exchange.distance < params.near;
-    let at_each_other = exchange.distance < params.clinch;
-    state[CLINCH_STEPS] = if at_each_other {
+    let in_clinch = exchange.distance < params.clinch;
+    state[CLINCH_STEPS] = if in_clinch {
         state[CLINCH_STEPS] + 1.0
     } else {
         0.0
@@ -223,7 +223,7 @@ pub fn step(
     let clinches = state[CLINCH_STEPS] == params.clinch_steps as f32;
     let rewards = [0, 1].map(|me| match (exchange.knocks_down[me], near) {
         (true, _) => params.knockdown_bonus,
-        (false, true) => exchange.near_reward(me, state[EFFORT + me]),
+        (false, true) => exchange.near_reward(me, state[SQUARED_ACCELERATION + me]),
         (false, false) => exchange.far_reward(me),
     });
     for (me, measures) in measures.chunks_exact_mut(MEASURES).enumerate() {
@@ -284,8 +284,8 @@ impl<'a> Exchange<'a> {
         self.params.dense * terms::far(terms::position(self.distance), velocity, facing)
     }
 
-    /// Table 3's sum for a fighter whose joints made such an effort.
-    fn near_reward(&self, me: usize, effort: f32) -> f32 {
+    /// Table 3's sum for a fighter with such a sum of squared joint accelerations.
+    fn near_reward(&self, me: usize, squared_acceleration: f32) -> f32 {
         let (params, other) = (self.params, 1 - me);
         let root = self.fighters.poses[self.fighters.root(other)];
         let up = (root.rotation * Vec3::Z).z;
@@ -300,7 +300,7 @@ impl<'a> Exchange<'a> {
         let dense = params.close_weight * self.close(me)
             + params.facing_weight * facing
             + params.fall_weight * fall
-            - params.energy_weight * terms::energy(self.distance, effort);
+            - params.energy_weight * terms::energy(self.distance, squared_acceleration);
         let damage = terms::damage(self.given[me], self.given[other], params.damage_taken);
         params.damage_weight * params.damage_scale * damage + params.dense * dense
             - params.penalty_weight * terms::penalty(self.fallen[me], self.out[me])

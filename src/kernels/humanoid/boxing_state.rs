@@ -10,7 +10,7 @@ pub const KNOCKDOWNS: usize = at::KNOCKDOWNS as usize;
 /// Index of 1 for each fighter that lay after the last step, two numbers.
 pub const DOWN: usize = at::DOWN as usize;
 /// Index of the squared accelerations of all joints in the last step, rad^2/s^4, two numbers.
-pub const EFFORT: usize = at::EFFORT as usize;
+pub const SQUARED_ACCELERATION: usize = at::SQUARED_ACCELERATION as usize;
 /// Index of the steps for which both have been in a clinch.
 pub const CLINCH_STEPS: usize = at::CLINCH_STEPS as usize;
 /// Index of the speeds of one fighter's joints and then the other's after the last step, rad/s.

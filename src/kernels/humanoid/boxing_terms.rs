@@ -63,15 +63,15 @@ pub fn fall(up: f32) -> f32 {
     0.6 * (1.0 - up).max(0.0)
 }
 
-/// How much effort counts at a `distance` of so many metres (equation 18).
+/// How much energy counts at a `distance` of so many metres (equation 18).
 pub fn nearness(distance: f32) -> f32 {
     let beyond = (distance - REACH).max(0.0);
     (-10.0 * beyond * beyond).exp()
 }
 
-/// Cost of an `effort`, the sum of the squared accelerations of all joints, rad^2/s^4 (equation 19).
-pub fn energy(distance: f32, effort: f32) -> f32 {
-    nearness(distance) * effort
+/// Cost of the energy that a sum of squared accelerations of all joints, rad^2/s^4, stands for (equation 19).
+pub fn energy(distance: f32, squared_acceleration: f32) -> f32 {
+    nearness(distance) * squared_acceleration
 }
 
 /// Penalties of who has fallen, and of who has left the arena.

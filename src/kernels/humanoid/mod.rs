@@ -3,7 +3,7 @@
 //! episodes that it ended. [`episode_sums`] collects statistics. The tasks `punch` and `joystick` have
 //! [`place_target`], [`punch_reward`] and [`punch_observe`] over a [`punch_state`];
 //! `track` has [`begin_track`], [`track_reward`] and [`track_observe`] over a [`track_state`]. The task `box` has
-//! [`place_fighters`], [`joint_efforts`], [`boxing_reward`] out of its [`boxing_terms`] and [`boxing_observe`], of
+//! [`place_fighters`], [`joint_accelerations`], [`boxing_reward`] out of its [`boxing_terms`] and [`boxing_observe`], of
 //! two [`fighters`], over a [`boxing_state`]. [`fallen`] says who lies.
 
 pub mod action_targets;
@@ -17,7 +17,7 @@ pub mod end_episode;
 pub mod episode_sums;
 pub mod fallen;
 pub mod fighters;
-pub mod joint_efforts;
+pub mod joint_accelerations;
 pub mod place_fighters;
 pub mod place_target;
 pub mod punch_observe;

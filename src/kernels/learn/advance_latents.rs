@@ -33,12 +33,11 @@ crate::shader_params! {
 
 /// Queues the shader on `gpu`.
 ///
-/// `dims` are the numbers of a latent, of the inner observation, and of centres (0: latents are any).
-/// `termination` is `[steps][rows]`, `centres`
-/// `[centres][1 + latent]`: the share of a centre and all before it, then the centre. Where an episode has
-/// ended, `final_observation` `[final_steps][rows][inner + latent]` gets `inner_final`
-/// `[final_steps][rows][inner]` and the latent. `latents` are `[rows][latent]`, `ages` `[rows]`: steps for which
-/// a latent is still kept.
+/// `dims` are the numbers of a latent and of the inner observation, and how many centres there are; with 0 centres a
+/// latent has any direction. `termination` is `[steps][rows]`, `centres` `[centres][1 + latent]`: the share of a centre
+/// and all before it, then the centre. Where an episode has ended, `final_observation`
+/// `[final_steps][rows][inner + latent]` gets `inner_final` `[final_steps][rows][inner]` and the latent. `latents` are
+/// `[rows][latent]`, `steps_left` `[rows]`: steps for which a latent is still kept.
 pub fn launch(
     gpu: &Gpu,
     dims: &Buffer<u32>,
@@ -47,7 +46,7 @@ pub fn launch(
     inner_final: &Buffer<f32>,
     final_observation: &Buffer<f32>,
     latents: &Buffer<f32>,
-    ages: &Buffer<u32>,
+    steps_left: &Buffer<u32>,
     params: &Params,
 ) {
     let buffers: [&dyn Argument; 7] = [
@@ -57,7 +56,7 @@ pub fn launch(
         inner_final,
         final_observation,
         latents,
-        ages,
+        steps_left,
     ];
     let groups = groups(&shader::ADVANCE_LATENTS, params.rows as usize);
     gpu.launch(&shader::ADVANCE_LATENTS, groups, &buffers, params);
@@ -71,12 +70,12 @@ pub fn twin(
     inner_final: &[f32],
     final_observation: &mut [f32],
     latents: &mut [f32],
-    ages: &mut [u32],
+    steps_left: &mut [u32],
     params: &Params,
 ) {
     let [dim, inner, centre_count] = [0, 1, 2].map(|at| dims[at] as usize);
     let centres = &centres[..centre_count * (1 + dim)];
-    let rows = latents.chunks_exact_mut(dim).zip(ages);
+    let rows = latents.chunks_exact_mut(dim).zip(steps_left);
     for (row, (latent, age)) in rows.enumerate().take(params.rows as usize) {
         let opening = params.opening == 1;
         let ended = !opening && termination[params.at as usize + row] != RUNNING;

@@ -2,8 +2,8 @@
 //! actions as far apart as they are. Shader: `shaders/learn/diversity_loss.wgsl`.
 //!
 //! The loss is (1 - d / (.5 - .5 cos))^2, d the mean squared difference of the mean actions under both latents,
-//! cos the cosine between these. Its gradient goes through one of the two actions alone and counts twice: over
-//! pairs, whose order is chance, that is the same.
+//! cos the cosine between these. The other action is that of the policy before the update, and the gradient, which
+//! goes through the agent's own alone, counts twice in place of going through both.
 
 use crate::gpu::{Buffer, Gpu, groups, shader};
 
@@ -26,8 +26,8 @@ crate::shader_params! {
 const LEAST: f32 = 1e-5;
 
 /// Queues the shader on `gpu`, behind [`ppo_loss`](super::ppo_loss) and with the same arrays. `samples` are
-/// `[..][width]`: the observation, whose last numbers are the latent; what PPO's loss reads; the mean action
-/// under another latent, and that latent.
+/// `[..][width]`: what PPO's loss reads, then the mean action under another latent, the agent's own latent, and
+/// that other one.
 pub fn launch(
     gpu: &Gpu,
     dims: &Buffer<u32>,
@@ -44,15 +44,14 @@ pub fn launch(
     );
 }
 
-/// The gradient for `rows` with respect to the `means`, `[rows][action]`; `observation` are the numbers of an
-/// observation.
-pub fn gradients(rows: &[&[f32]], means: &[f32], observation: usize, params: &Params) -> Vec<f32> {
+/// The gradient for `rows` with respect to the `means`, `[rows][action]`.
+pub fn gradients(rows: &[&[f32]], means: &[f32], params: &Params) -> Vec<f32> {
     let actions = means.len() / rows.len().max(1);
     let latent = params.latent as usize;
     let pairs = rows.iter().zip(means.chunks_exact(actions));
     let gradient = |(row, mean): (&&[f32], &[f32])| {
-        let own = &row[observation - latent..observation];
-        let (rest, other) = row.split_at(row.len() - latent);
+        let (rest, latents) = row.split_at(row.len() - 2 * latent);
+        let (own, other) = latents.split_at(latent);
         let other_mean = &rest[rest.len() - actions..];
         let apart = 0.5 - 0.5 * cosine(own, other) + LEAST;
         let changes = mean.iter().zip(other_mean).map(|(a, b)| a - b);

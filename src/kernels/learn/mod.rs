@@ -1,8 +1,10 @@
-//! Learning: [`sample_action`] draws actions, [`gae`] computes advantages, [`normalize_advantages`] makes them alike. A discriminator sees
-//! [`style_windows`], and gives the [`style_reward`]; [`discriminator_loss`] is its objective. Skills: [`advance_latents`], [`encoder_loss`], [`skill_reward`], [`diversity_loss`]. The gradient of narrow dense
-//! networks, in order: [`forward`], an objective such as [`ppo_loss`], [`backward`], [`mod@gradient`],
-//! [`reduce_grads`]; [`network`] defines their memory layout. A step against any gradient: [`adapt_lr`],
-//! [`grad_norm`], [`adam`].
+//! Learning: [`sample_action`] draws actions, [`gae`] computes advantages, [`normalize_advantages`] makes them alike. The
+//! gradient of narrow dense networks, in order: [`forward`], an objective such as [`ppo_loss`], [`backward`],
+//! [`mod@gradient`], [`reduce_grads`]; [`network`] defines their memory layout. A step against any gradient:
+//! [`adapt_lr`], [`grad_norm`], [`adam`].
+//!
+//! A discriminator sees [`style_windows`], and gives the [`style_reward`]; [`discriminator_loss`] is its objective.
+//! Skills add [`advance_latents`], [`encoder_loss`], [`skill_reward`] and [`diversity_loss`].
 //!
 //! Under a high level, a low-level policy is given its [`low_level_input`]; [`keep_first_end`] and [`sum_decision`]
 //! make a decision's transition of the steps that it lasts.

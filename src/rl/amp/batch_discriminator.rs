@@ -1,6 +1,6 @@
 //! A discriminator that learns no more, on a device.
 
-use super::LatentUse;
+use super::{LatentUse, style};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::style_reward;
 use crate::nn::{Engine, RunningMeanStd, rows};
@@ -33,12 +33,6 @@ impl BatchDiscriminator {
         let (parameters, outputs) = (&self.parameters, &mut self.outputs);
         self.engine
             .forward(0, parameters, &seen, 0, rows, outputs, 0);
-        let params = &self.params;
-        match &self.device {
-            Device::Cpu => style_reward::twin(outputs.host(), reward.host_mut(), params),
-            Device::Gpu(gpu) => {
-                style_reward::launch(gpu, outputs.buffer(), reward.buffer(), params);
-            }
-        }
+        style::reward(&self.device, outputs, reward, &self.params);
     }
 }

@@ -3,7 +3,7 @@
 use super::adaptive_steps::AdaptiveSteps;
 use super::loss::{COSINE, SUMS, TellApart};
 use super::replay::Replay;
-use super::{Amp, DiscriminatorLoss, LatentUse};
+use super::{Amp, DiscriminatorLoss, LatentUse, style};
 use crate::container::{Section, SectionError};
 use crate::env::Demonstrations;
 use crate::gpu::{Array, Device};
@@ -147,13 +147,7 @@ impl Discriminator {
             heads: self.config.heads as u32,
             hinge: u32::from(self.config.loss == DiscriminatorLoss::Hinge),
         };
-        let reward = &mut rollout.style_reward;
-        match &self.device {
-            Device::Cpu => style_reward::twin(output.host(), reward.host_mut(), &params),
-            Device::Gpu(gpu) => {
-                style_reward::launch(gpu, output.buffer(), reward.buffer(), &params);
-            }
-        }
+        style::reward(&self.device, output, &mut rollout.style_reward, &params);
     }
 
     fn reward_skill(&mut self, output: &Array, latents: &Array, rollout: &mut Rollout) {
@@ -187,30 +181,18 @@ impl Discriminator {
         };
         let window = self.dim() - self.latents.shown();
         let mut windows = Array::zeroed(&self.device, rollout.samples() * window);
-        match &self.device {
-            Device::Cpu => style_windows::twin(
-                rollout.observation.host(),
-                rollout.next_observation.host(),
-                rollout.final_observation.host(),
-                rollout.termination.host(),
-                windows.host_mut(),
-                &params,
-            ),
-            Device::Gpu(gpu) => style_windows::launch(
-                gpu,
-                rollout.observation.buffer(),
-                rollout.next_observation.buffer(),
-                rollout.final_observation.buffer(),
-                rollout.termination.buffer(),
-                windows.buffer(),
-                &params,
-            ),
-        }
+        let moments = style::Moments {
+            observation: &rollout.observation,
+            next_observation: &rollout.next_observation,
+            final_observation: &rollout.final_observation,
+            termination: &rollout.termination,
+        };
+        style::windows(&self.device, &moments, &mut windows, &params);
         match self.latents {
-            LatentUse::Shown(dim) => {
+            LatentUse::Conditioned(dim) => {
                 rows::beside(&self.device, &[(&windows, window), (latents, dim)])
             }
-            LatentUse::None | LatentUse::Found(_) => windows,
+            LatentUse::None | LatentUse::Encoded(_) => windows,
         }
     }
 

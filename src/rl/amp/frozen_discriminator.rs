@@ -50,17 +50,17 @@ impl FrozenDiscriminator {
 
     /// The style reward of moving from a moment to the next under a latent, which counts where it is shown.
     pub fn reward(&self, moments: [&[f32]; 2], latent: &[f32]) -> f32 {
-        let mut reward = [0.0];
-        style_reward::twin(&self.output(moments, latent), &mut reward, &self.params);
-        reward[0]
+        self.reward_and_cosine(moments, latent).0
     }
 
-    /// The cosine between a latent and what the encoder finds in moving from a moment to the next; `None` if
-    /// there is no encoder.
-    pub fn cosine(&self, moments: [&[f32]; 2], latent: &[f32]) -> Option<f32> {
+    /// The style reward, and the cosine between the latent and what the encoder finds; `None` if there is no encoder.
+    pub fn reward_and_cosine(&self, moments: [&[f32]; 2], latent: &[f32]) -> (f32, Option<f32>) {
         let output = self.output(moments, latent);
+        let mut reward = [0.0];
+        style_reward::twin(&output, &mut reward, &self.params);
         let found = &output[self.params.heads as usize..];
-        (!found.is_empty()).then(|| encoder_loss::cosine(found, latent).0)
+        let cosine = (!found.is_empty()).then(|| encoder_loss::cosine(found, latent).0);
+        (reward[0], cosine)
     }
 
     fn output(&self, moments: [&[f32]; 2], latent: &[f32]) -> Vec<f32> {

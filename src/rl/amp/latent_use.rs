@@ -7,9 +7,9 @@ pub enum LatentUse {
     #[default]
     None,
     /// An encoder of so many outputs behind its own finds them again.
-    Found(usize),
+    Encoded(usize),
     /// It sees so many numbers beside every window, recorded ones too: what it takes for recorded depends on them.
-    Shown(usize),
+    Conditioned(usize),
 }
 
 impl LatentUse {
@@ -17,15 +17,15 @@ impl LatentUse {
     pub fn dim(self) -> usize {
         match self {
             LatentUse::None => 0,
-            LatentUse::Found(dim) | LatentUse::Shown(dim) => dim,
+            LatentUse::Encoded(dim) | LatentUse::Conditioned(dim) => dim,
         }
     }
 
     /// Numbers beside a window.
     pub fn shown(self) -> usize {
         match self {
-            LatentUse::Shown(dim) => dim,
-            LatentUse::None | LatentUse::Found(_) => 0,
+            LatentUse::Conditioned(dim) => dim,
+            LatentUse::None | LatentUse::Encoded(_) => 0,
         }
     }
 

@@ -45,9 +45,11 @@ impl AmpLearner {
             .collect();
         let samples = ppo.rollout_length * envs.spec().rows();
         let latents = skills.latents;
+        // An environment alone has no other latent beside it.
+        let paired = envs.parts.iter().all(|part| part.spec().rows() > 1);
         let diversity = Diversity {
             latent: latents.dim(),
-            weight: skills.diversity,
+            weight: if paired { skills.diversity } else { 0.0 },
         };
         let learner = PpoLearner::with_rewards(ppo, envs, device, seed, &rewards)?;
         Ok(AmpLearner {

@@ -13,6 +13,7 @@ pub mod latent_use;
 pub mod learner;
 mod loss;
 mod replay;
+pub(in crate::rl) mod style;
 
 pub use batch_discriminator::BatchDiscriminator;
 pub use discriminator::Discriminator;

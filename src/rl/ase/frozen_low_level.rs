@@ -15,28 +15,32 @@ pub struct FrozenLowLevel {
 }
 
 impl FrozenLowLevel {
-    /// The low level of bodies that observe so many numbers of themselves, with latents of so many: the `widths`.
+    /// Refuses a policy that does not observe so many numbers of a body and of a latent: the `widths`.
     ///
     /// # Errors
-    /// The policy observes other things.
-    pub fn new(
-        policy: Policy,
-        discriminator: FrozenDiscriminator,
-        widths: [usize; 2],
-    ) -> Result<FrozenLowLevel, String> {
+    /// It observes other things.
+    pub fn check(policy: &Policy, widths: [usize; 2]) -> Result<(), String> {
         let (observation, [style, latent]) = (policy.observation(), widths);
-        let wanted = style.checked_add(latent);
-        if observation.grid.is_some() || wanted != Some(observation.vector) || latent < 2 {
+        if observation.grid.is_some() || style.checked_add(latent) != Some(observation.vector) {
             let dim = observation.dim();
             return Err(format!(
                 "it observes {dim} numbers, which are not {style} of a body and {latent} of a latent"
             ));
         }
-        Ok(FrozenLowLevel {
+        Ok(())
+    }
+
+    /// The low level of a policy that has been [checked](Self::check).
+    pub fn new(
+        policy: Policy,
+        discriminator: FrozenDiscriminator,
+        widths: [usize; 2],
+    ) -> FrozenLowLevel {
+        FrozenLowLevel {
             policy,
             discriminator,
             widths,
-        })
+        }
     }
 
     /// Numbers that a body observes of itself, then those of a latent.
@@ -68,7 +72,7 @@ impl FrozenLowLevel {
         })
     }
 
-    /// A checksum of all that decides what it does and rewards.
+    /// A checksum of all that it has learned.
     pub fn fingerprint(&self) -> u32 {
         let mut hasher = crc32fast::Hasher::new();
         let moments = self.policy.normalizer.as_ref();

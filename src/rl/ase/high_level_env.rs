@@ -6,6 +6,7 @@ use crate::container::{Section, SectionError};
 use crate::env::{EnvSpec, Transition, VecEnv};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::style_windows;
+use crate::rl::amp::style;
 use crate::rl::step_columns::StepColumns;
 use anyhow::Result;
 
@@ -77,26 +78,13 @@ impl HighLevelEnv {
             style: self.spec.style as u32,
             final_steps: 1,
         };
-        let (last, termination) = (&self.step.final_observation, &self.step.termination);
-        match &self.device {
-            Device::Cpu => style_windows::twin(
-                self.before.host(),
-                self.after.host(),
-                last.host(),
-                termination.host(),
-                self.windows.host_mut(),
-                &params,
-            ),
-            Device::Gpu(gpu) => style_windows::launch(
-                gpu,
-                self.before.buffer(),
-                self.after.buffer(),
-                last.buffer(),
-                termination.buffer(),
-                self.windows.buffer(),
-                &params,
-            ),
-        }
+        let moments = style::Moments {
+            observation: &self.before,
+            next_observation: &self.after,
+            final_observation: &self.step.final_observation,
+            termination: &self.step.termination,
+        };
+        style::windows(&self.device, &moments, &mut self.windows, &params);
     }
 }
 

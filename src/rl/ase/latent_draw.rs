@@ -4,8 +4,9 @@ use super::{Ase, LowLevel};
 use crate::kernels::learn::advance_latents::to_sphere;
 use crate::kernels::rng::{gaussian, random4};
 
-/// Random streams: of the clips' latents, and of any.
+/// Random streams: of the clips' latents, of those about them, and of any.
 const CLIPS: u32 = 0x434c_4950;
+const ABOUT: u32 = 0x4142_4f55;
 const ANY: u32 = 0x414e_5953;
 
 /// Which latents there are, and how likely each is.
@@ -46,6 +47,19 @@ impl LatentDraw {
     /// The latent of every clip; empty if clips have none.
     pub fn clips(&self) -> impl Iterator<Item = &[f32]> {
         self.centres.chunks_exact(1 + self.dim).map(|row| &row[1..])
+    }
+
+    /// A latent about that of a clip, as agents move under, the same one for the same `number`; empty if clips have
+    /// none. A discriminator that was shown the clip's own beside recordings could tell them by it.
+    pub fn about_clip(&self, clip: usize, number: usize) -> Vec<f32> {
+        let noise = |at: usize| gaussian(random4(clip as u32, number as u32, at as u32, ABOUT));
+        let centre = self.clips().nth(clip).unwrap_or_default().iter();
+        let mut latent: Vec<f32> = centre
+            .enumerate()
+            .map(|(at, centre)| centre + self.spread * noise(at))
+            .collect();
+        to_sphere(&mut latent);
+        latent
     }
 
     /// So many latents of all directions, the same ones every time.

@@ -22,7 +22,7 @@ pub struct LatentEnv {
     /// `[rows][latent]`
     latents: Array,
     /// Steps for which they are still kept, `[rows]`.
-    ages: Array<u32>,
+    steps_left: Array<u32>,
     /// What the inner environments observe, `[rows][inner]`, and observed last, `[final_steps][rows][inner]`.
     observation: Array,
     inner_final: Array,
@@ -56,7 +56,7 @@ impl LatentEnv {
             // An array holds something.
             centres: Array::from_slice(device, &[&draw.centres[..], &[0.0]].concat()),
             latents: Array::zeroed(device, rows * dim),
-            ages: Array::zeroed(device, rows),
+            steps_left: Array::zeroed(device, rows),
             observation: Array::zeroed(device, rows * width),
             inner_final: Array::zeroed(device, rows * width),
             first: (first * spec.agents) as u32,
@@ -69,11 +69,6 @@ impl LatentEnv {
         let (none, mut no_row) = (Array::zeroed(device, rows), Array::zeroed(device, 1));
         env.advance(&none, None, &mut no_row);
         env
-    }
-
-    /// The latents of this moment, `[rows][latent]`.
-    pub fn latents(&self) -> &Array {
-        &self.latents
     }
 
     /// Lets latents grow older by the step of a rollout, or draws all of them.
@@ -105,7 +100,7 @@ impl LatentEnv {
                 self.inner_final.host(),
                 final_observation.host_mut(),
                 self.latents.host_mut(),
-                self.ages.host_mut(),
+                self.steps_left.host_mut(),
                 &params,
             ),
             Device::Gpu(gpu) => launch(
@@ -116,7 +111,7 @@ impl LatentEnv {
                 self.inner_final.buffer(),
                 final_observation.buffer(),
                 self.latents.buffer(),
-                self.ages.buffer(),
+                self.steps_left.buffer(),
                 &params,
             ),
         }
@@ -181,7 +176,7 @@ impl VecEnv for LatentEnv {
         to.put_section("inner", inner);
         to.put("latent_steps", self.step_counter);
         to.put_array("latents", &self.latents.read(&self.device)?);
-        to.put_array("latent_ages", &self.ages.read(&self.device)?);
+        to.put_array("latent_steps_left", &self.steps_left.read(&self.device)?);
         Ok(())
     }
 
@@ -189,9 +184,9 @@ impl VecEnv for LatentEnv {
         self.inner.load(&mut from.take_section("inner"))?;
         self.step_counter = from.get("latent_steps")?;
         let latents = from.take_finite("latents", self.latents.len())?;
-        let ages: Vec<u32> = from.take_array("latent_ages", self.ages.len())?;
+        let steps_left: Vec<u32> = from.take_array("latent_steps_left", self.steps_left.len())?;
         self.latents = Array::from_slice(&self.device, &latents);
-        self.ages = Array::from_slice(&self.device, &ages);
+        self.steps_left = Array::from_slice(&self.device, &steps_left);
         Ok(())
     }
 }

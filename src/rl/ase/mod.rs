@@ -2,23 +2,23 @@
 //! vector that it observes. It is [AMP](super::amp) whose environments carry latents.
 //!
 //! [`Ase`] holds what may be chosen, [`LatentDraw`] says which latents there are, and [`LatentEnv`] are
-//! environments around environments whose agents move under them; a [`LatentDriver`] moves
-//! bodies on the host.
+//! environments around environments whose agents move under them; a [`LatentDriver`] moves bodies on the host.
 //!
 //! When learning is over a [`FrozenLowLevel`] is left, whose skills a high-level policy may steer: [`HighLevelEnv`]
 //! makes environments of a body into environments of latents, and a [`HighLevelDriver`] moves bodies on the host, a
-//! [`SteadyDriver`] those whom nobody steers.
+//! [`FixedLatentDriver`] those whom nobody steers.
 
 mod batch_low_level;
+mod fixed_latent_driver;
 mod frozen_low_level;
 mod high_level_driver;
 mod high_level_env;
 mod latent_draw;
 mod latent_driver;
 mod latent_env;
-mod steady_driver;
 
 use super::amp::{LatentUse, SkillRewards};
+pub use fixed_latent_driver::FixedLatentDriver;
 pub use frozen_low_level::FrozenLowLevel;
 pub use high_level_driver::HighLevelDriver;
 pub use high_level_env::HighLevelEnv;
@@ -26,7 +26,6 @@ pub use latent_draw::LatentDraw;
 pub use latent_driver::LatentDriver;
 pub use latent_env::LatentEnv;
 use serde::{Deserialize, Serialize};
-pub use steady_driver::SteadyDriver;
 
 /// Steps of the low level that a decision of a high level lasts.
 pub const STEPS_PER_DECISION: usize = 5;
@@ -79,12 +78,12 @@ impl Ase {
     pub fn rewards(&self) -> SkillRewards {
         match self.low_level {
             LowLevel::Ase => SkillRewards {
-                latents: LatentUse::Found(self.latent),
+                latents: LatentUse::Encoded(self.latent),
                 weight: self.skill_weight,
                 diversity: self.diversity,
             },
             LowLevel::PerClip => SkillRewards {
-                latents: LatentUse::Shown(self.latent),
+                latents: LatentUse::Conditioned(self.latent),
                 weight: 0.0,
                 diversity: self.diversity,
             },

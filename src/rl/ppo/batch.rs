@@ -13,8 +13,10 @@ use std::ops::Range;
 pub struct Batch<'a> {
     device: &'a Device,
     rollouts: &'a [Rollout],
-    /// What all samples end with, `[samples][more]`, in the rollouts' order.
-    more: Option<Array>,
+    /// What all samples end with, `[samples][..]`, in the rollouts' order.
+    ends: Option<Array>,
+    /// Samples without what they end with, `[samples][..]`, as far as that differs from `rows`.
+    gathered: Array,
     /// `[streams][FIELDS]`, see [`crate::kernels::learn::rollout_moments::scale`].
     scale: Array,
     /// `[samples][width]`
@@ -26,32 +28,31 @@ pub struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// All samples of `rollouts`, normalised by `scale`; each ends with a row of `more`, if there is any.
+    /// All samples of `rollouts`, normalised by `scale`; each ends with a row of `ends`, if there are any.
     pub fn new(
         device: &'a Device,
         rollouts: &'a [Rollout],
         scale: Array,
-        more: Option<Array>,
+        ends: Option<Array>,
     ) -> Self {
         let spec = &rollouts[0].spec;
         let samples: usize = rollouts.iter().map(Rollout::samples).sum();
         let streams = scale.len() / FIELDS;
         let width = width(spec.observation.dim(), spec.action, streams);
+        let gathered = Array::zeroed(device, samples * width);
         let mut batch = Batch {
             device,
             rollouts,
-            more,
+            width: width + ends.as_ref().map_or(0, |ends| ends.len() / samples),
+            ends,
+            rows: gathered.clone(),
+            gathered,
             scale,
-            rows: Array::zeroed(device, samples * width),
-            width,
             order: Vec::new(),
         };
         if let Device::Cpu = device {
             batch.gather_on_host();
-            if let Some(more) = batch.more.take() {
-                batch.rows = batch.joined(&more);
-                batch.width = batch.rows.len() / samples;
-            }
+            batch.join_ends(None);
         }
         batch
     }
@@ -65,10 +66,6 @@ impl<'a> Batch<'a> {
     pub fn begin_epoch(&mut self, order: Vec<u32>) {
         if let Device::Gpu(gpu) = self.device {
             let rollout = &self.rollouts[0];
-            let own = self.own_width();
-            if self.width > own {
-                self.rows = Array::zeroed(self.device, self.samples() * own);
-            }
             launch(
                 gpu,
                 &Buffer::from_slice(gpu, &order),
@@ -78,31 +75,27 @@ impl<'a> Batch<'a> {
                 rollout.log_prob_and_value.buffer(),
                 rollout.advantage_and_return.buffer(),
                 self.scale.buffer(),
-                self.rows.buffer(),
+                self.gathered.buffer(),
                 &self.params(rollout),
             );
-            if let Some(more) = &self.more {
-                let width = more.len() / self.samples();
-                self.rows = self.joined(&rows::pick(self.device, more, width, &order));
-                self.width = own + width;
-            }
+            self.join_ends(Some(&order));
         }
         self.order = order;
     }
 
-    /// The rows with those of `more` behind them.
-    fn joined(&self, more: &Array) -> Array {
-        let parts = [
-            (&self.rows, self.own_width()),
-            (more, more.len() / self.samples()),
-        ];
-        rows::beside(self.device, &parts)
-    }
-
-    /// Numbers of a row without what it ends with.
-    fn own_width(&self) -> usize {
-        let spec = &self.rollouts[0].spec;
-        width(spec.observation.dim(), spec.action, self.streams())
+    /// Makes the rows of what was gathered and what it ends with, in this order or the rollouts'.
+    fn join_ends(&mut self, order: Option<&[u32]>) {
+        let Some(ends) = &self.ends else {
+            self.rows = self.gathered.clone();
+            return;
+        };
+        let samples = self.samples();
+        let (own, width) = (self.gathered.len() / samples, ends.len() / samples);
+        let ends = match order {
+            None => ends.clone(),
+            Some(order) => rows::pick(self.device, ends, width, order),
+        };
+        self.rows = rows::beside(self.device, &[(&self.gathered, own), (&ends, width)]);
     }
 
     /// The rows of a minibatch of the epoch.
@@ -114,8 +107,8 @@ impl<'a> Batch<'a> {
     }
 
     fn gather_on_host(&mut self) {
-        let (width, streams) = (self.width, self.streams());
-        let (mut rest, mut parts) = (self.rows.host_mut(), Vec::new());
+        let (width, streams) = (self.gathered.len() / self.samples(), self.streams());
+        let (mut rest, mut parts) = (self.gathered.host_mut(), Vec::new());
         for rollout in self.rollouts {
             let (part, after) = rest.split_at_mut(rollout.samples() * width);
             parts.push((rollout, part));

@@ -55,6 +55,9 @@ pub struct PpoLearner {
     /// Where the streams of rewards come from.
     sources: Vec<RewardSource>,
     diversity: Diversity,
+    /// Latents of the present rollouts as they are drawn, `[samples][latent]` each, if they are to lead to different
+    /// actions.
+    latents: Vec<Array>,
     /// What decides on their weights, if the style is one of them.
     task_weight: Option<TaskWeight>,
     /// Rollouts of the present iteration, one for each part of the environments.
@@ -93,8 +96,7 @@ impl PpoLearner {
         Self::with_rewards(config, envs, device, seed, &[(RewardSource::Task, 1.0)])
     }
 
-    /// The same for rewards from several sources, whose advantages are normalised apart and added by their
-    /// weights.
+    /// A learner for rewards from several sources, whose advantages are normalised apart and added by their weights.
     ///
     /// # Errors
     /// The network does not fit the observation, or the device.
@@ -132,6 +134,7 @@ impl PpoLearner {
                 .then(TaskWeight::fixed),
             sources,
             diversity: Diversity::default(),
+            latents: Vec::new(),
             rollouts: Vec::new(),
             gradient: Array::zeroed(device, parameters),
             sums: Array::zeroed(device, SUMS),
@@ -148,7 +151,8 @@ impl PpoLearner {
         })
     }
 
-    /// Asks for different actions under different latents.
+    /// Asks for different actions under different latents, of which there are at least two in every part of the
+    /// environments.
     pub fn with_diversity(self, diversity: Diversity) -> Self {
         PpoLearner { diversity, ..self }
     }
@@ -208,6 +212,10 @@ impl PpoLearner {
             for rollout in &rollouts {
                 running.update(&rollout.observation, rollout.samples());
             }
+        }
+        if self.diversity.width(self.spec.action) > 0 {
+            let latents = rollouts.iter().map(|rollout| self.latents_of(rollout));
+            self.latents = latents.collect();
         }
         rollouts
             .par_iter_mut()
@@ -353,38 +361,48 @@ impl PpoLearner {
         self.rollouts = rollouts;
     }
 
-    /// The mean action of every sample of rollouts under the latent of another, and that latent,
-    /// `[samples][action + latent]`, if latents are to lead to different actions.
+    /// The last numbers of a rollout's observations, `[samples][latent]`.
+    fn latents_of(&self, rollout: &Rollout) -> Array {
+        let width = self.spec.observation.dim();
+        let range = width - self.diversity.latent..width;
+        rows::columns(&self.device, &rollout.observation, width, range)
+    }
+
+    /// What samples of rollouts end with for the loss of latents that lead to the same actions: see [`Diversity`].
     fn under_other_latents(&self, rollouts: &[Rollout]) -> Option<Array> {
-        let width = self.diversity.width(self.spec.action);
-        if width == 0 {
+        if self.diversity.width(self.spec.action) == 0 {
             return None;
         }
-        let parts: Vec<Array> = rollouts
-            .iter()
-            .map(|rollout| self.under_another(rollout))
+        let parts = rollouts.iter().zip(&self.latents);
+        let parts: Vec<Array> = parts
+            .map(|(rollout, latents)| self.under_another(rollout, latents))
             .collect();
         Some(rows::join(&self.device, &parts.iter().collect::<Vec<_>>()))
     }
 
-    fn under_another(&self, rollout: &Rollout) -> Array {
+    /// Pairs every sample with another environment's of the same step. `latents` are as they are drawn, while the
+    /// rollout's observations are normalised.
+    fn under_another(&self, rollout: &Rollout, latents: &Array) -> Array {
         let (device, latent) = (&self.device, self.diversity.latent);
         let (width, samples) = (self.spec.observation.dim(), rollout.samples());
-        let body = width - latent;
-        // Another environment's: its latent is as likely as any.
-        let most = rollout.spec.rows().max(2) as u32 - 1;
+        let (body, count) = (width - latent, rollout.spec.rows());
         let [bits, ..] = random4(self.seed, 0, self.updates as u32, OTHER_LATENT);
-        let shift = 1 + index_below(bits, most) as usize;
-        let numbers: Vec<u32> = (0..samples)
-            .map(|at| ((at + shift) % samples) as u32)
-            .collect();
-        let columns = |range| rows::columns(device, &rollout.observation, width, range);
-        let other = rows::pick(device, &columns(body..width), latent, &numbers);
-        let seen = rows::beside(device, &[(&columns(0..body), body), (&other, latent)]);
+        let shift = 1 + index_below(bits, count as u32 - 1) as usize;
+        let other = |at: usize| (at / count * count + (at + shift) % count) as u32;
+        let numbers: Vec<u32> = (0..samples).map(other).collect();
+        let pick = |latents: &Array| rows::pick(device, latents, latent, &numbers);
+        let own = rows::columns(device, &rollout.observation, width, 0..body);
+        let seen = [(&own, body), (&pick(&self.latents_of(rollout)), latent)];
+        let seen = rows::beside(device, &seen);
         let mut mean = Array::zeroed(device, samples * self.spec.action);
         self.engine
             .forward(ACTOR, &self.parameters, &seen, 0, samples, &mut mean, 0);
-        rows::beside(device, &[(&mean, self.spec.action), (&other, latent)])
+        let columns = [
+            (&mean, self.spec.action),
+            (latents, latent),
+            (&pick(latents), latent),
+        ];
+        rows::beside(device, &columns)
     }
 
     /// One gradient step on a minibatch.
@@ -394,7 +412,6 @@ impl PpoLearner {
             values: self.sources.len(),
             log_std: self.networks.log_std(),
             old_log_std: &self.log_std,
-            observation: self.spec.observation.dim(),
             diversity: self.diversity,
             coefficients: LossCoefficients {
                 inv_count: 1.0 / samples.len() as f32,

@@ -56,14 +56,12 @@ pub struct PpoLoss<'a> {
     pub old_log_std: &'a Array,
     /// Weights and clip ranges of the loss.
     pub coefficients: LossCoefficients,
-    /// Numbers of an observation.
-    pub observation: usize,
     /// What latents are to lead to.
     pub diversity: Diversity,
 }
 
 /// The loss of latents that lead to the same actions: see [`diversity_loss`]. A sample then ends with the mean
-/// action under another latent, and that latent.
+/// action under another latent, the agent's own latent, and that other one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Diversity {
     /// Numbers of a latent, the last of an observation.
@@ -76,7 +74,7 @@ impl Diversity {
     /// Numbers that a sample ends with.
     pub fn width(&self, action: usize) -> usize {
         match self.weight > 0.0 && self.latent > 0 {
-            true => action + self.latent,
+            true => action + 2 * self.latent,
             false => 0,
         }
     }
@@ -124,7 +122,7 @@ impl Objective for PpoLoss<'_> {
             0 => {
                 let more = diverse.then(|| {
                     let params = self.diversity_params();
-                    diversity_loss::gradients(batch.rows, outputs, self.observation, &params)
+                    diversity_loss::gradients(batch.rows, outputs, &params)
                 });
                 let log_std = &batch.parameters[self.log_std.clone()];
                 let old_log_std = self.old_log_std.host();

@@ -186,6 +186,12 @@ impl Pool {
         }
         [self.games, self.updates] = from.get("since_last")?;
         self.next = from.get("next")?;
+        let numbered = ids.windows(2).all(|pair| pair[0] < pair[1]);
+        let last = ids.last().is_some_and(|last| *last < self.next);
+        let won = bouts.iter().all(|[games, wins]| wins <= games);
+        if !(numbered && last && won && self.next < u32::MAX) {
+            return Err(SectionError("its pool's members are no such".into()));
+        }
         let members = ids.into_iter().zip(bouts).map(|(id, [games, wins])| {
             let own = &mut from.take_section(&format!("member-{id}"));
             let opponent = Opponent::load(own, observation, action)?;

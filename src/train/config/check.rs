@@ -105,7 +105,7 @@ fn check_ppo(ppo: &Ppo) -> Result<(), ConfigError> {
     within("ppo.init_log_std", ppo.init_log_std, -10.0, 2.0)
 }
 
-fn check_amp(amp: &Amp) -> Result<(), ConfigError> {
+pub(in crate::train) fn check_amp(amp: &Amp) -> Result<(), ConfigError> {
     within("amp.heads", amp.heads, 1, 1024)?;
     within("amp.steps", amp.steps, 1, 1000)?;
     within("amp.minibatch_size", amp.minibatch_size, 2, 1 << 20)?;
@@ -119,7 +119,7 @@ fn check_amp(amp: &Amp) -> Result<(), ConfigError> {
     within("amp.task_weight", amp.task_weight, 0.0, 1e3)
 }
 
-fn check_ase(ase: &Ase) -> Result<(), ConfigError> {
+pub(in crate::train) fn check_ase(ase: &Ase) -> Result<(), ConfigError> {
     let [least, most] = ase.kept_steps;
     within("ase.latent", ase.latent, 2, 256)?;
     within("ase.kept_steps", most, 1, 10_000)?;

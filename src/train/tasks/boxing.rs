@@ -10,12 +10,13 @@ use crate::env::humanoid::driver::BodyDriver;
 use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
 use crate::rl::amp::Amp;
+use crate::rl::ase::STEPS_PER_DECISION;
 use crate::rl::ppo::Ppo;
 use crate::rl::self_play::SelfPlay;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
 use crate::train::evaluation::Evaluation;
 use crate::train::low_level;
-use crate::train::task::{Ablation, Measure, TaskEntry, Variant};
+use crate::train::task::{Ablation, Measure, Steering, TaskEntry, Variant};
 use std::sync::Arc;
 
 /// The task `box` in the registry.
@@ -23,29 +24,37 @@ pub const ENTRY: TaskEntry = TaskEntry {
     name: "box",
     about: "Let two simulated bodies learn to fight each other, by self-play",
     preset,
-    steering: Some(steering_preset),
+    steering: Some(Steering {
+        preset: steering_preset,
+        measures: MEASURES,
+        rates: RATES,
+    }),
     spec: check,
     takes_motions: true,
     load: |config| load::<BoxTask>(config, scenes::humanoid()),
     ablations: &[ABLATION],
 };
 
+/// What is compared of bouts.
+const MEASURES: &[Measure] = &[
+    Measure::percent("engaged %", "engagement"),
+    Measure {
+        title: "knock-downs a bout",
+        name: "knockdowns_per_bout",
+        unit: 1.0,
+        digits: 2,
+    },
+    Measure::percent("from behind %", "from_behind"),
+];
+const RATES: &[&str] = &["win_rate", "engagement", "knockdowns"];
+
 /// The paper's figure 9.
 const ABLATION: Ablation = Ablation {
     name: "box",
     about: "Boxing: with and without the rewards for facing each other",
     folder: "runs/box-ablation",
-    measures: &[
-        Measure::percent("engaged %", "engagement"),
-        Measure {
-            title: "knock-downs a bout",
-            name: "knockdowns_per_bout",
-            unit: 1.0,
-            digits: 2,
-        },
-        Measure::percent("from behind %", "from_behind"),
-    ],
-    rates: &["win_rate", "engagement", "knockdowns"],
+    measures: MEASURES,
+    rates: RATES,
     variants: &[
         Variant {
             name: "full",
@@ -60,7 +69,10 @@ const ABLATION: Ablation = Ablation {
 
 fn preset(chosen: Preset) -> TaskPreset {
     TaskPreset {
-        settings: table(&Boxing::default()),
+        settings: table(&match chosen {
+            Preset::Fast => Boxing::default(),
+            Preset::Paper => Boxing::printed(),
+        }),
         ppo: Ppo {
             gamma: 0.99,
             ..styled(chosen)
@@ -122,6 +134,18 @@ impl MotionTask for BoxTask {
         table(&self.boxing)
     }
 
+    fn notes(&self, config: &Config) -> Vec<String> {
+        // Of a step: a decision's discount is that of all its steps.
+        let gamma = match &config.skills {
+            Some(_) => config.ppo.gamma.powf(1.0 / STEPS_PER_DECISION as f32),
+            None => config.ppo.gamma,
+        };
+        let ratio = self.boxing.bonus_ratio(gamma);
+        vec![format!(
+            "a knock-down is worth {ratio:.2} bouts of standing close and face to face"
+        )]
+    }
+
     fn played(&self, library: &Arc<MotionLibrary>, seed: u32) -> Arc<BoxingTask> {
         Arc::new(BoxingTask::new(&self.boxing, library, seed))
     }
@@ -149,7 +173,7 @@ impl MotionTask for BoxTask {
             ("lost", found.lost),
             ("mean_bout_s", found.mean_bout_s),
             ("engagement", found.engagement),
-            ("knockdowns_per_bout", found.knockdowns_per_bout),
+            ("knockdowns_per_bout", found.knockdowns[0]),
             ("damage", found.damage[0]),
             ("from_behind", found.from_behind),
             ("clinches_per_bout", found.clinches_per_bout),

@@ -3,8 +3,7 @@
 
 use super::motions;
 use crate::env::humanoid::boxing::BoxingTask;
-use crate::env::humanoid::boxing::corners::Standing;
-use crate::env::humanoid::driver::BodyDriver;
+use crate::env::humanoid::driver::{BodyDriver, RepeatAction};
 use crate::env::humanoid::task::{HumanoidTask, open, spec};
 use crate::env::{EnvBatch, VecEnv};
 use crate::gpu::Device;
@@ -14,8 +13,8 @@ use crate::physics::motion_library::MotionLibrary;
 use crate::rl::Algorithm;
 use crate::rl::amp::SkillRewards;
 use crate::rl::ase::{
-    FrozenLowLevel, HighLevelDriver, HighLevelEnv, LatentDraw, LatentDriver, LatentEnv,
-    SteadyDriver,
+    FixedLatentDriver, FrozenLowLevel, HighLevelDriver, HighLevelEnv, LatentDraw, LatentDriver,
+    LatentEnv,
 };
 use crate::rl::self_play::{SelfPlay, SelfPlayEnv, SelfPlayLearner};
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
@@ -53,6 +52,11 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
 
     /// The choices as the table `[task]`, but for the name.
     fn settings(&self) -> toml::Table;
+
+    /// What the user should know of the choices of a training.
+    fn notes(&self, _config: &Config) -> Vec<String> {
+        Vec::new()
+    }
 
     /// The task in a training; its start states depend on `seed`.
     fn played(&self, library: &Arc<MotionLibrary>, seed: u32) -> Arc<Self::Played>;
@@ -117,7 +121,8 @@ pub struct MotionTraining<T> {
 /// body could move like.
 pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
     let task = T::of(config)?;
-    let (library, notes) = motions::load(config, &Arc::new(body), T::PERFORMANCE)?;
+    let (library, mut notes) = motions::load(config, &Arc::new(body), T::PERFORMANCE)?;
+    notes.extend(task.notes(config));
     let low_level = config.skills.as_deref().map(low_level::load).transpose()?;
     Ok(Loaded {
         task: Box::new(MotionTraining {
@@ -141,8 +146,8 @@ impl<T: MotionTask> MotionTraining<T> {
     fn still(&self, task: &dyn HumanoidTask) -> Box<dyn BodyDriver> {
         let observation = spec(task.model(), task.observation(), 1).observation.dim();
         match &self.low_level {
-            Some(low_level) => Box::new(SteadyDriver::new(low_level, observation)),
-            None => Box::new(Standing::new(task.rest_action(), observation)),
+            Some(low_level) => Box::new(FixedLatentDriver::new(low_level, observation)),
+            None => Box::new(RepeatAction::new(task.rest_action(), observation)),
         }
     }
 }

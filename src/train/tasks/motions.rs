@@ -114,8 +114,11 @@ pub fn learner(
 ) -> Result<Box<dyn Algorithm>> {
     let (ppo, seed) = (&config.ppo, config.seed);
     let latents = latents.filter(|_| skills.latents.shown() > 0);
-    let clips: Vec<&[f32]> = latents.iter().flat_map(|draw| draw.clips()).collect();
-    let demonstrations = Arc::new(demonstrations(library, &clips));
+    let latent = |clip: usize, window: usize| match latents {
+        Some(draw) => draw.about_clip(clip, window),
+        None => Vec::new(),
+    };
+    let demonstrations = Arc::new(demonstrations(library, latent));
     let learner = AmpLearner::new(ppo, amp, skills, &demonstrations, envs, device, seed)?;
     let weight = TaskWeight::new(&config.task_weight, amp.lambda());
     Ok(Box::new(learner.with_task_weight(weight)))

@@ -18,7 +18,7 @@ use crate::rl::ppo::Ppo;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
 use crate::train::evaluation::Evaluation;
 use crate::train::low_level;
-use crate::train::task::{Ablation, Measure, TaskEntry, Variant};
+use crate::train::task::{Ablation, Measure, Steering, TaskEntry, Variant};
 use std::sync::Arc;
 
 /// The task `punch` in the registry.
@@ -26,7 +26,9 @@ pub const PUNCH: TaskEntry = TaskEntry {
     name: "punch",
     about: "Let a simulated body run up to a box and topple it",
     preset: |chosen| preset(chosen, Punch::default()),
-    steering: Some(|chosen| steering_preset(chosen, Punch::default())),
+    steering: Some(steering_with(|chosen| {
+        steering_preset(chosen, Punch::default())
+    })),
     spec: check,
     takes_motions: true,
     load: |config| load::<TargetTask>(config, scenes::humanoid()),
@@ -38,10 +40,46 @@ pub const JOYSTICK: TaskEntry = TaskEntry {
     name: "joystick",
     about: "Let it walk to the box while it faces any way that is wanted",
     preset: |chosen| preset(chosen, joystick_choices()),
-    steering: Some(|chosen| steering_preset(chosen, joystick_choices())),
+    steering: Some(steering_with(|chosen| {
+        steering_preset(chosen, joystick_choices())
+    })),
     ablations: &[],
     ..PUNCH
 };
+
+const fn steering_with(preset: fn(Preset) -> TaskPreset) -> Steering {
+    Steering {
+        preset,
+        measures: MEASURES,
+        rates: &["hit", "fall"],
+    }
+}
+
+/// What is told of a policy that acts itself beside one that steers.
+const MEASURES: &[Measure] = &[
+    Measure::percent("survival %", "survival"),
+    Measure::percent("by a fist %", "fist_rate"),
+    Measure::seconds("time s", "time_to_hit_mean_s"),
+    Measure::percent("boxing near %", "boxing_share"),
+    Measure {
+        title: "from recordings m",
+        name: "dtw_m",
+        unit: 1.0,
+        digits: 3,
+    },
+    Measure {
+        title: "power W",
+        name: "power_w",
+        unit: 1.0,
+        digits: 0,
+    },
+    Measure {
+        title: "facing error deg",
+        name: "facing_error_deg",
+        unit: 1.0,
+        digits: 1,
+    },
+];
 
 fn joystick_choices() -> Punch {
     Punch {
@@ -113,12 +151,10 @@ fn preset(chosen: Preset, punch: Punch) -> TaskPreset {
 
 fn steering_preset(chosen: Preset, punch: Punch) -> TaskPreset {
     TaskPreset {
-        settings: table(&punch),
         ppo: steering(chosen),
         amp: None,
-        ase: None,
-        self_play: None,
         steps: 2_000_000,
+        ..preset(chosen, punch)
     }
 }
 

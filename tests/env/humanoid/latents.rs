@@ -104,6 +104,7 @@ fn latents_of_clips_lie_about_their_clips() {
     let mut envs = opened(&Device::Cpu, LowLevel::PerClip);
     let width = envs.spec().observation.dim();
     let played = play(&Device::Cpu, &mut envs, 20, 1);
+    let mut own = Vec::new();
     for latent in split(&played.observations, width, width - LATENT)
         .1
         .chunks_exact(LATENT)
@@ -111,5 +112,20 @@ fn latents_of_clips_lie_about_their_clips() {
         let cosine = |centre: &&[f32]| centre.iter().zip(latent).map(|(a, b)| a * b).sum::<f32>();
         let nearest = centres.iter().map(cosine).fold(-1.0, f32::max);
         assert!(nearest > 0.95, "{nearest}");
+        own.push(nearest);
     }
+    // What a discriminator is shown beside recordings lies as far from them.
+    let shown = (0..own.len()).map(|number| {
+        let latent = clips.about_clip(1, number);
+        let pairs = centres[1].iter().zip(&latent);
+        pairs.map(|(a, b)| a * b).sum::<f32>()
+    });
+    let shown: Vec<f32> = shown.collect();
+    let mean = |cosines: &[f32]| cosines.iter().sum::<f32>() / cosines.len() as f32;
+    let spread = 1.0 - mean(&own);
+    assert!((1e-3..0.05).contains(&spread), "{spread}");
+    assert!(
+        (1.0 - mean(&shown) - spread).abs() < 0.3 * spread,
+        "{spread}"
+    );
 }

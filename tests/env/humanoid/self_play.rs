@@ -403,7 +403,6 @@ fn opponents_are_drawn_by_how_often_they_are_not_beaten() {
         // Three standard deviations of ten thousand.
         assert!((found - wanted).abs() < 0.015, "{found}, not {wanted}");
     }
-    pool.end_update(0, &[]);
     let mut beaten = Pool::new(&SelfPlay::default(), scripted(4));
     beaten.end_update(0, &[won(0), won(1), won(2), won(3)]);
     for found in drawn(&beaten) {

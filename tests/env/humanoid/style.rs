@@ -162,7 +162,7 @@ fn a_reset_is_a_recorded_moment() {
     let style = envs.spec().style;
     let mut seen = Array::zeroed(&Device::Cpu, 64 * style);
     envs.observe(&mut seen, 0);
-    let recorded = demonstrations(&LIBRARY, &[]);
+    let recorded = demonstrations(&LIBRARY, |_, _| Vec::new());
     assert_eq!(recorded.dim, 2 * style);
     for row in seen.host().chunks_exact(style) {
         let distance = |window: &[f32]| {
@@ -187,7 +187,7 @@ fn a_reset_is_a_recorded_moment() {
 
 #[test]
 fn demonstrations_are_drawn_by_weight() {
-    let recorded = demonstrations(&LIBRARY, &[]);
+    let recorded = demonstrations(&LIBRARY, |_, _| Vec::new());
     let boundary = (6.0 * 30.0) as u32 - 1;
     let share = LIBRARY.share(0);
     let mut draw = Draw::new(4);
@@ -216,7 +216,7 @@ fn a_frozen_discriminator_rewards_as_it_did() {
     rollout.observe(envs.as_mut(), steps);
     let running = |&end: &u32| end == termination::RUNNING;
     assert!(rollout.termination.host().iter().all(running));
-    let recorded = Arc::new(demonstrations(&LIBRARY, &[]));
+    let recorded = Arc::new(demonstrations(&LIBRARY, |_, _| Vec::new()));
     let mut rollouts = [rollout];
     for loss in [DiscriminatorLoss::Bce, DiscriminatorLoss::Hinge] {
         let amp = Amp {

@@ -249,7 +249,7 @@ fn skill_rewards_agree() {
 
 const ACTION: usize = 3;
 const SEEN: usize = 2 + LATENT;
-const ROW: usize = SEEN + 5 + ACTION + LATENT;
+const ROW: usize = SEEN + 5 + ACTION + 2 * LATENT;
 
 /// The CPU's function as the shader has its arrays.
 mod diversity_by_rows {
@@ -268,7 +268,7 @@ mod diversity_by_rows {
         let samples = samples[START * ROW..].chunks_exact(ROW).take(rows);
         let samples: Vec<&[f32]> = samples.collect();
         let means = &outputs[..rows * ACTION];
-        let more = diversity_loss::gradients(&samples, means, SEEN, params);
+        let more = diversity_loss::gradients(&samples, means, params);
         let pairs = output_grads.iter_mut().zip(more);
         pairs.for_each(|(gradient, more)| *gradient += more);
     }
@@ -302,7 +302,7 @@ fn diversity_losses_agree() {
                 .iter()
                 .map(|&x| f64::from(x))
                 .collect();
-            let (own, other) = (&sample[SEEN - LATENT..SEEN], &sample[ROW - LATENT..]);
+            let (own, other) = sample[ROW - 2 * LATENT..].split_at(LATENT);
             let product =
                 |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
             let cosine = product(own, other) / (product(own, own) * product(other, other)).sqrt();
@@ -310,7 +310,7 @@ fn diversity_losses_agree() {
                 let change = |i: usize| {
                     let moved = if i == at { by } else { 0.0 };
                     let mean = f64::from(outputs[row * ACTION + i]) + moved;
-                    (mean - sample[ROW - LATENT - ACTION + i]).powi(2)
+                    (mean - sample[ROW - 2 * LATENT - ACTION + i]).powi(2)
                 };
                 let mean = (0..ACTION).map(change).sum::<f64>() / ACTION as f64;
                 0.1 * (1.0 - mean / (0.5 - 0.5 * cosine + 1e-5)).powi(2)

@@ -22,7 +22,7 @@ pub struct Boxing {
     pub speed: f32,
     /// Whether a fall ends the bout.
     pub fall_ends: bool,
-    /// Whether facing is rewarded, and asked for where the opponent's fall is.
+    /// Whether facing is rewarded, and required for the reward of an opponent that is about to fall.
     pub facing: bool,
     /// Reward of the step that knocks the opponent down.
     pub knockdown_bonus: f32,
@@ -34,7 +34,7 @@ pub struct Boxing {
     /// Weight of all that is neither damage nor penalty nor a knock-down, in the beginning and after
     /// `anneal_steps`.
     pub dense: [f32; 2],
-    /// Steps of an environment over which these two change.
+    /// Steps of an environment over which `damage_taken` and `dense` change.
     pub anneal_steps: u32,
     /// Weight of the damage (table 3).
     pub damage_weight: f32,
@@ -50,7 +50,7 @@ pub struct Boxing {
     pub penalty_weight: f32,
     /// Distance below which fighters that stay there are in a clinch, m.
     pub clinch_distance: f32,
-    /// Time after which they are, s.
+    /// Time that they stay there before it is one, s.
     pub clinch_s: f32,
 }
 
@@ -73,7 +73,8 @@ impl Default for Boxing {
             damage_scale: 0.01,
             damage_taken: [0.0, 2.0],
             dense: [1.0, 0.25],
-            anneal_steps: 100_000,
+            // Half of a training of 512 environments.
+            anneal_steps: 20_000,
             damage_weight: 1.0,
             close_weight: 4.0,
             facing_weight: 10.0,
@@ -132,7 +133,7 @@ impl Boxing {
         self.knockdown_bonus / (dense * discounted).max(f32::MIN_POSITIVE)
     }
 
-    /// Steps after which fighters that are at each other are in a clinch.
+    /// Steps after which fighters within `clinch_distance` are in a clinch.
     pub fn clinch_steps(&self) -> u32 {
         ((self.clinch_s / DT).round() as u32).max(1)
     }
@@ -173,10 +174,11 @@ impl Boxing {
                 "start_distance must be two distances of at least 0.5 m, the smaller first".into(),
             );
         }
-        match self.arena >= most.max(least + MARGIN) {
+        let reach = most.max(least + MARGIN);
+        match self.arena >= reach {
             true => Ok(()),
             false => Err(format!(
-                "an arena of {} m to each side is too small to start in: it must reach the starts, up to {most} m from its centre",
+                "an arena of {} m to each side is too small to start in: it must reach {reach} m from its centre",
                 self.arena
             )),
         }

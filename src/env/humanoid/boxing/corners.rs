@@ -40,22 +40,3 @@ impl<'a> Corners<'a> {
         pairs.flat_map(|(red, blue)| [red, blue].concat()).collect()
     }
 }
-
-/// An opponent that holds one pose.
-pub struct Standing {
-    rest: Vec<f32>,
-    observation: usize,
-}
-
-impl Standing {
-    /// Who repeats the action `rest`, `[action]`, whatever it sees of `observation` numbers.
-    pub fn new(rest: Vec<f32>, observation: usize) -> Self {
-        Standing { rest, observation }
-    }
-}
-
-impl BodyDriver for Standing {
-    fn act(&self, observation: &[f32], _: &mut DriverState) -> Vec<f32> {
-        self.rest.repeat(observation.len() / self.observation)
-    }
-}

@@ -25,13 +25,11 @@ pub struct BoxingReport {
     pub mean_bout_s: f64,
     /// Fraction of the time in which the fighters were near each other.
     pub engagement: f64,
-    /// Knock-downs of a bout, by whoever.
-    pub knockdowns_per_bout: f64,
     /// Fraction of the damage that was done from behind.
     pub from_behind: f64,
     /// Clinches of a bout.
     pub clinches_per_bout: f64,
-    /// Mean knock-downs of a bout by each.
+    /// Mean knock-downs of a bout by each: falls of the other, who may have fallen by itself.
     pub knockdowns: [f64; FIGHTERS],
     /// Mean impulse of each one's hands on the other's torso and head in a bout, N s.
     pub damage: [f64; FIGHTERS],
@@ -62,9 +60,10 @@ fn report(found: &Episodes, envs: &CpuHumanoidEnv) -> BoxingReport {
     let bouts = envs.spec().envs;
     let mean = |name: &str| {
         let stat = names.iter().position(|other| *other == name);
+        let stat = stat.expect("a statistic of bouts");
         [0, 1].map(|corner| {
             let rows = found.sums.iter().skip(corner).step_by(FIGHTERS);
-            let sums = rows.filter_map(|sums| sums.get(stat?));
+            let sums = rows.filter_map(|sums| sums.get(stat));
             sums.map(|&sum| f64::from(sum)).sum::<f64>() / bouts.max(1) as f64
         })
     };
@@ -79,7 +78,6 @@ fn report(found: &Episodes, envs: &CpuHumanoidEnv) -> BoxingReport {
         drawn: 1.0 - won - lost,
         mean_bout_s: steps * f64::from(DT),
         engagement: mean("engaged_steps")[0] / steps.max(1.0),
-        knockdowns_per_bout: both(knockdowns),
         from_behind: both(mean("damage_from_behind")) / both(damage).max(1e-9),
         clinches_per_bout: mean("clinches")[0],
         knockdowns,

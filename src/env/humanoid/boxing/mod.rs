@@ -21,7 +21,9 @@ use crate::env::spec::EnvSpec;
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::humanoid::boxing_state::state_dim;
 use crate::kernels::humanoid::fighters::{FIGHTERS, Fighters};
-use crate::kernels::humanoid::{boxing_observe, boxing_reward, joint_efforts, place_fighters};
+use crate::kernels::humanoid::{
+    boxing_observe, boxing_reward, joint_accelerations, place_fighters,
+};
 use crate::kernels::physics::smooth_dynamics::DynamicsLayout;
 use crate::kernels::termination::TRUNCATED;
 use crate::physics::model::Model;
@@ -29,7 +31,6 @@ use crate::physics::motion_library::MotionLibrary;
 use crate::physics::scenes;
 use crate::physics::simulator::Simulator;
 pub use choices::Boxing;
-use corners::Standing;
 use std::sync::Arc;
 
 /// The task with the motion in which fighters begin.
@@ -45,7 +46,7 @@ pub struct BoxingTask {
 #[derive(Clone, Copy)]
 struct Params {
     place: place_fighters::Params,
-    efforts: joint_efforts::Params,
+    accelerations: joint_accelerations::Params,
     reward: boxing_reward::Params,
     observe: boxing_observe::Params,
 }
@@ -72,16 +73,6 @@ impl BoxingTask {
             params: params(boxing, &model),
             model,
         }
-    }
-
-    /// The choices.
-    pub fn boxing(&self) -> &Boxing {
-        &self.boxing
-    }
-
-    /// An opponent that only stands there.
-    pub fn standing(&self) -> Standing {
-        Standing::new(self.rest_action.clone(), boxing_spec(1).observation.dim())
     }
 }
 
@@ -121,8 +112,8 @@ fn params(boxing: &Boxing, model: &Model) -> Params {
         speed: boxing.speed,
         dt: DT,
         damage_scale: boxing.damage_scale,
-        damage_taken: boxing.damage_taken[0],
-        dense: boxing.dense[0],
+        damage_taken: 0.0,
+        dense: 0.0,
         knockdown_bonus: boxing.knockdown_bonus,
         damage_weight: boxing.damage_weight,
         close_weight: boxing.close_weight,
@@ -143,7 +134,7 @@ fn params(boxing: &Boxing, model: &Model) -> Params {
             least,
             most,
         },
-        efforts: joint_efforts::Params {
+        accelerations: joint_accelerations::Params {
             envs: 0,
             positions: model.nq() as u32,
             dofs,
@@ -251,7 +242,7 @@ impl HumanoidTask for BoxingTask {
     }
 
     fn state_dim(&self) -> usize {
-        state_dim(self.params.efforts.dofs as usize)
+        state_dim(self.params.accelerations.dofs as usize)
     }
 
     fn force_pairs(&self) -> Vec<[usize; 2]> {
@@ -277,7 +268,7 @@ impl HumanoidTask for BoxingTask {
         outcomes: &mut [StepOutcome],
         measures: &mut [f32],
     ) {
-        joint_efforts::note(&world.state.v, state, &self.params.efforts);
+        joint_accelerations::update(&world.state.v, state, &self.params.accelerations);
         let touching = world.pair_forces(self.model.bodies.len());
         let fighters = self.params.fighters(simulator);
         let params = self.params.reward(&self.boxing, moment, 0);
@@ -330,11 +321,11 @@ impl GpuHumanoidTask for GpuBoxing {
         moment: &StepContext,
     ) {
         let (gpu, batch) = (&worlds.gpu, &worlds.batch);
-        let efforts = joint_efforts::Params {
+        let accelerations = joint_accelerations::Params {
             envs: moment.envs,
-            ..self.params.efforts
+            ..self.params.accelerations
         };
-        joint_efforts::launch(gpu, &batch.state, &worlds.state, &efforts);
+        joint_accelerations::launch(gpu, &batch.state, &worlds.state, &accelerations);
         boxing_reward::launch(
             gpu,
             &batch.poses,

@@ -46,7 +46,8 @@ pub struct Punch {
     pub far: FarReward,
     /// Weight of the reward for a far target.
     pub far_weight: f32,
-    /// 1 if the wanted facing of `joystick` is any; more if it is the more often near the way.
+    /// How often the wanted facing of `joystick` is near the way: 1 draws every facing alike, larger numbers favour
+    /// those near it.
     pub facing_power: f32,
     /// Whether facing is rewarded.
     pub facing: bool,
@@ -125,8 +126,10 @@ impl Punch {
             ("fist_speed", self.fist_speed),
             ("after_hit_s", self.after_hit_s),
             ("far_weight", self.far_weight),
-            ("facing_power", self.facing_power),
         ])?;
+        if !(1.0..=100.0).contains(&self.facing_power) {
+            return Err("facing_power must lie between 1 and 100".into());
+        }
         for (name, speed) in [("speed", self.speed), ("hand_speed", self.hand_speed)] {
             if speed < 0.01 {
                 return Err(format!("{name} must be at least 0.01 m/s"));

@@ -3,7 +3,7 @@
 use super::PunchTask;
 use super::steering::{SteeringProbe, SteeringReport};
 use crate::env::humanoid::driver::{BodyDriver, DriverState};
-use crate::env::humanoid::fidelity::{FidelityProbe, FidelityReport, PoseTrack};
+use crate::env::humanoid::fidelity::{COMPARED, FidelityProbe, FidelityReport, PoseTrack};
 use crate::env::humanoid::task::play::{Episodes, play_episodes};
 use crate::env::humanoid::task::{CpuHumanoidEnv, DT};
 use crate::physics::motion_library::MotionLibrary;
@@ -12,8 +12,7 @@ use std::sync::Arc;
 
 /// Kind of the clips that are punches.
 pub const BOXING: &str = "boxing";
-/// Episodes of which poses near the target are compared with recordings, and how near, m.
-const COMPARED: usize = 64;
+/// How near to the target poses are compared with recordings, m.
 const NEAR: f32 = 1.5;
 
 /// How a policy fared.

@@ -1,13 +1,13 @@
 //! How much the joints of two fighters were accelerated in a step. Shader:
-//! `shaders/humanoid/joint_efforts.wgsl`.
+//! `shaders/humanoid/joint_accelerations.wgsl`.
 
-use super::boxing_state::{EFFORT, JOINT_SPEEDS, ROOT_DOFS, state_dim};
+use super::boxing_state::{JOINT_SPEEDS, ROOT_DOFS, SQUARED_ACCELERATION, state_dim};
 use super::fighters::FIGHTERS;
 use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::kernels::physics::strided::{gather, scatter};
 
 crate::shader_params! {
-    pub struct Params for joint_efforts {
+    pub struct Params for joint_accelerations {
         /// Environments of the batch.
         pub envs: u32,
         /// Positions of a world.
@@ -23,8 +23,16 @@ crate::shader_params! {
 ///
 /// `state` is `[nq + nv][envs]`, `task_state` `[state_dim][envs]`, see [`state_dim`].
 pub fn launch(gpu: &Gpu, state: &Buffer<f32>, task_state: &Buffer<f32>, params: &Params) {
-    let groups = groups(&shader::JOINT_EFFORTS, FIGHTERS * params.envs as usize);
-    gpu.launch(&shader::JOINT_EFFORTS, groups, &[state, task_state], params);
+    let groups = groups(
+        &shader::JOINT_ACCELERATIONS,
+        FIGHTERS * params.envs as usize,
+    );
+    gpu.launch(
+        &shader::JOINT_ACCELERATIONS,
+        groups,
+        &[state, task_state],
+        params,
+    );
 }
 
 /// The shader's computation on the host.
@@ -35,21 +43,21 @@ pub fn twin(state: &[f32], task_state: &mut [f32], params: &Params) {
     for env in 0..envs {
         gather(state, envs, env, params.positions as usize, &mut v);
         gather(task_state, envs, env, 0, &mut carried);
-        note(&v, &mut carried, params);
+        update(&v, &mut carried, params);
         scatter(task_state, envs, env, 0, &carried);
     }
 }
 
-/// Writes the efforts of a step after which the velocities of a world are `v`, `[nv]`, and remembers the speeds of
+/// Writes the sums of squared accelerations in a step after which the velocities of a world are `v`, `[nv]`, and remembers the speeds of
 /// the joints.
-pub fn note(v: &[f32], state: &mut [f32], params: &Params) {
+pub fn update(v: &[f32], state: &mut [f32], params: &Params) {
     let (carried, before) = state.split_at_mut(JOINT_SPEEDS);
     let before = before.chunks_exact_mut(params.dofs as usize - ROOT_DOFS);
     let fighters = v.chunks_exact(params.dofs as usize).zip(before);
-    for (effort, (v, before)) in carried[EFFORT..].iter_mut().zip(fighters) {
+    for (sum, (v, before)) in carried[SQUARED_ACCELERATION..].iter_mut().zip(fighters) {
         let pairs = v[ROOT_DOFS..].iter().zip(&*before);
         let accelerations = pairs.map(|(now, before)| (now - before) / params.dt);
-        *effort = accelerations
+        *sum = accelerations
             .map(|acceleration| acceleration * acceleration)
             .sum();
         before.copy_from_slice(&v[ROOT_DOFS..]);
