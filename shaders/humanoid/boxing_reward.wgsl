@@ -16,6 +16,7 @@
 #import spatial
 #import boxing
 #import boxing_terms
+#import approach
 #import fallen
 #import fighters
 
@@ -38,6 +39,8 @@ struct Params {
     min_body: f32,         // of all but the feet
     fall_ends: u32,        // 1 if a fall ends the bout
     facing: u32,           // 1 if facing is rewarded, and required for the reward of a fall
+    additive: u32,         // 1 if the way to a far opponent is rewarded by a sum
+    stagger_steps: u32,    // after a blow in which a fall is a knock-down; 0 if every fall is one
     clinch_steps: u32,     // within `clinch` after which fighters are in one
     clinch: f32,           // m, the distance of one
     arena: f32,            // m, half its width
@@ -48,6 +51,7 @@ struct Params {
     damage_taken: f32,     // weight of those taken against those given
     dense: f32,            // weight of what is neither damage nor penalty nor a knock-down
     knockdown_bonus: f32,
+    far_weight: f32,       // of the reward for an opponent that is far
     damage_weight: f32,    // the paper's table 3
     close_weight: f32,
     facing_weight: f32,
@@ -78,6 +82,8 @@ var<private> alignment: f32;
 var<private> fallen: vec2<bool>;
 var<private> left: vec2<bool>;     // the arena
 var<private> given: vec2f;         // N
+var<private> stagger: vec2f;
+var<private> knocks_down: vec2<bool>;
 
 fn bound(count: u32) -> u32 { return select(0u, count, task_end[2u * env] <= FAILED + LEADS); }
 
@@ -128,8 +134,12 @@ fn closest(me: u32) -> f32 {
 fn far_reward(me: u32) -> f32 {
     let way = select(-toward, toward, me == 0u);
     let along = dot(way, root_velocity(me).xy);
-    let faces = select(0.0, facing_from_afar(ahead[me]), params.facing == 1u);
-    return params.dense * far(position(distance_apart), velocity(along, params.speed), faces);
+    let faces = params.facing == 1u;
+    let printed = far(
+        position(distance_apart), velocity(along, params.speed), select(0.0, facing_from_afar(ahead[me]), faces),
+    );
+    let sum = approach(along, select(0.0, 0.5 * (1.0 + ahead[me]), faces), distance_apart);
+    return params.dense * params.far_weight * select(printed, sum, params.additive == 1u);
 }
 
 // Table 3.
@@ -144,10 +154,16 @@ fn near_reward(me: u32) -> f32 {
         + params.dense * dense - params.penalty_weight * penalty(fallen[me], left[me]);
 }
 
-// A fall together is nobody's knock-down.
-fn knocks_down(me: u32) -> bool {
+// Steps that are left in which a fall of the other is this one's doing.
+fn stagger_of(me: u32) -> f32 {
+    return select(max(carried(STAGGER_STEPS + me) - 1.0, 0.0), f32(params.stagger_steps), given[me] > 0.0);
+}
+
+// A fall together is nobody's knock-down, and a fall long after the last blow is the own fault of who falls.
+fn has_knocked_down(me: u32) -> bool {
     let other = 1u - me;
-    return fallen[other] && carried(DOWN + other) == 0.0 && !fallen[me];
+    let caused = params.stagger_steps == 0u || stagger[me] > 0.0;
+    return fallen[other] && carried(DOWN + other) == 0.0 && !fallen[me] && caused;
 }
 
 fn leads(me: u32) -> bool {
@@ -159,7 +175,8 @@ fn leads(me: u32) -> bool {
 fn end_of(me: u32) -> u32 {
     let falls = vec2<bool>(fallen.x && params.fall_ends == 1u, fallen.y && params.fall_ends == 1u);
     let over = any(falls) || any(left);
-    let own = select(SUCCESS, FAILED, falls[me] || left[me]);
+    let remains = select(TRUNCATED, SUCCESS, knocks_down[me]);
+    let own = select(remains, FAILED, falls[me] || left[me]);
     return select(RUNNING, own, over) + select(0u, LEADS, leads(me));
 }
 
@@ -169,7 +186,7 @@ fn measure(me: u32, clinches: bool) {
     let impulse = params.dt * given[me];
     measures[row] = impulse;
     measures[rows + row] = select(0.0, impulse, ahead[1u - me] < 0.0);
-    measures[2u * rows + row] = is(knocks_down(me));
+    measures[2u * rows + row] = is(knocks_down[me]);
     measures[3u * rows + row] = is(left[me]);
     measures[4u * rows + row] = is(distance_apart < params.near);
     measures[5u * rows + row] = is(clinches);
@@ -183,20 +200,23 @@ fn boxing_reward(@builtin(global_invocation_id) id: vec3u) {
     fallen = vec2<bool>(has_fallen(0u), has_fallen(params.bodies));
     left = vec2<bool>(is_out(0u), is_out(1u));
     given = vec2f(force_of(0u), force_of(1u));
+    stagger = vec2f(stagger_of(0u), stagger_of(1u));
+    knocks_down = vec2<bool>(has_knocked_down(0u), has_knocked_down(1u));
     let clinch = select(0.0, carried(CLINCH_STEPS) + 1.0, distance_apart < params.clinch);
     carry(CLINCH_STEPS, clinch);
     for (var me = 0u; me < 2u; me++) {
         let at = params.at + 2u * env + me;
         let near = distance_apart < params.near;
         let own = select(far_reward(me), near_reward(me), near);
-        reward[at] = select(own, params.knockdown_bonus, knocks_down(me));
+        reward[at] = select(own, params.knockdown_bonus, knocks_down[me]);
         kind[at] = select(0u, 1u, near);
         measure(me, clinch == f32(params.clinch_steps));
         carry(DAMAGE + me, carried(DAMAGE + me) + params.dt * given[me]);
-        carry(KNOCKDOWNS + me, carried(KNOCKDOWNS + me) + is(knocks_down(me)));
+        carry(KNOCKDOWNS + me, carried(KNOCKDOWNS + me) + is(knocks_down[me]));
     }
     for (var me = 0u; me < 2u; me++) {
         task_end[2u * env + me] = end_of(me);
         carry(DOWN + me, is(fallen[me]));
+        carry(STAGGER_STEPS + me, stagger[me]);
     }
 }

@@ -17,6 +17,7 @@
 #import termination
 #import spatial
 #import punch
+#import approach
 
 struct Params {
     envs: u32,
@@ -83,8 +84,8 @@ fn near_reward(hand: u32, toward: vec2f, target_position: vec3f) -> f32 {
 fn far_reward(distance: f32, way: vec2f, velocity: vec2f, alignment: f32) -> f32 {
     let along = dot(way, velocity);
     if (params.far == 2u) {
-        let facing = select(0.2, 0.1 * (1.0 + alignment), params.facing == 1u);
-        return 0.6 * clamp(along / 1.5, -0.3, 1.0) + facing + 0.2 / (1.0 + distance);
+        let facing = select(1.0, 0.5 * (1.0 + alignment), params.facing == 1u);
+        return approach(along, facing, distance);
     }
     if (params.far == 3u) {
         let off = length(velocity - params.speed * way) / params.speed;

@@ -69,14 +69,11 @@ impl Tournament {
         for run in &self.checkpoints {
             field.enter(run, moved, true)?;
         }
-        let (Some(Bouts { task, still }), 2..) = (field.bouts, field.players.len()) else {
+        let (Some(Bouts { task, anchors }), 2..) = (field.bouts, field.players.len()) else {
             let why = "a tournament takes two checkpoints at least: name more runs, or give --checkpoints";
             return Err(Usage(why.into()).into());
         };
-        field.players.push(TournamentPlayer {
-            name: "(does nothing)".into(),
-            driver: still,
-        });
+        field.players.extend(anchors);
         let count = field.players.len();
         tell!(
             "{count} players, {} bouts",

@@ -390,7 +390,9 @@ mod tests {
         assert!(pd(0.0, 1.0).load(&mut saved_state(&fixed)).is_err());
         assert!(pd(0.0, 1.0).load(&mut Section::default()).is_err());
         for broken in [f64::NAN, f64::INFINITY, -1.0] {
-            let mut section = saved_state(&pd(0.0, broken));
+            let mut weight = pd(0.0, 1.0);
+            weight.rule.as_mut().expect("a rule").lambda = broken;
+            let mut section = saved_state(&weight);
             assert!(pd(0.0, 1.0).load(&mut section).is_err(), "{broken}");
         }
     }

@@ -44,14 +44,17 @@ pub fn load(run: &Path) -> Result<FrozenLowLevel> {
     let widths = [header.spec.style, config.ase.latent];
     let fits = FrozenLowLevel::check(&checkpoint.policy, widths);
     fits.map_err(|why| anyhow!("{path} is no low level: {why}"))?;
-    let ([style, _], latents) = (widths, config.ase.rewards().latents);
+    let (style, data) = (header.spec.style, header.fingerprint.data);
+    let latents = config.ase.rewards().latents;
     let mut learner = checkpoint.sections.take("learner")?;
     let discriminator = FrozenDiscriminator::load(&config.amp, latents, &mut learner, style)
         .with_context(|| format!("the discriminator of {path} cannot be read"))?;
     Ok(FrozenLowLevel::new(
         checkpoint.policy,
         discriminator,
-        widths,
+        config.ase,
+        style,
+        data,
     ))
 }
 

@@ -13,8 +13,8 @@ use std::sync::Arc;
 pub struct Bouts {
     /// The task.
     pub task: Arc<BoxingTask>,
-    /// Who does nothing.
-    pub still: Box<dyn BodyDriver>,
+    /// Whom nobody has trained, who does least first.
+    pub anchors: Vec<TournamentPlayer>,
 }
 
 /// Somebody who fights.

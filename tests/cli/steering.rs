@@ -74,7 +74,10 @@ fn skills_are_steered_and_evaluated() {
         "compare punch --skills low {small} --steps 320 --out both"
     ));
     let table = place.read("both/comparison.txt");
-    assert!(table.contains("amp") && table.contains("ase"), "{table}");
+    assert!(
+        table.contains("direct") && table.contains("steered"),
+        "{table}"
+    );
     assert!(place.path("both/comparison.png").exists());
 }
 

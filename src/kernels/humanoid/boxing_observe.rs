@@ -40,8 +40,10 @@ crate::shader_params! {
     }
 }
 
+/// Index among them of where the opponent's root is.
+pub const OPPONENT: usize = 2;
 /// Numbers that are added: of the border 2, of the opponent's root 15, of each fighter's hands 24.
-pub const DIM: usize = 2 + 15 + 2 * 24;
+pub const DIM: usize = OPPONENT + 15 + 2 * 24;
 
 /// Queues the shader on `gpu`.
 ///

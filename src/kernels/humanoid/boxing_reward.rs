@@ -1,7 +1,10 @@
 //! Rewards, measures and end of a step of the task `box`, for both fighters. Shader:
 //! `shaders/humanoid/boxing_reward.wgsl`.
 
-use super::boxing_state::{CLINCH_STEPS, DAMAGE, DOWN, KNOCKDOWNS, SQUARED_ACCELERATION};
+use super::approach::approach;
+use super::boxing_state::{
+    CLINCH_STEPS, DAMAGE, DOWN, KNOCKDOWNS, SQUARED_ACCELERATION, STAGGER_STEPS,
+};
 use super::boxing_terms as terms;
 use super::fallen::{FallRules, has_fallen};
 use super::fighters::{FIGHTERS, FighterBodies, Fighters};
@@ -10,7 +13,7 @@ use crate::kernels::physics::collision::poses_of;
 use crate::kernels::physics::proprioception::unit;
 use crate::kernels::physics::smooth_dynamics::spatial;
 use crate::kernels::physics::strided::{gather, scatter};
-use crate::kernels::termination::{FAILED, LEADS, RUNNING, SUCCESS};
+use crate::kernels::termination::{FAILED, LEADS, RUNNING, SUCCESS, TRUNCATED};
 use crate::physics::spatial::Spatial;
 use glam::{Vec2, Vec3};
 
@@ -52,6 +55,10 @@ crate::shader_params! {
         pub fall_ends: u32,
         /// 1 if facing is rewarded, and required for the reward of an opponent that is about to fall.
         pub facing: u32,
+        /// 1 if the way to a far opponent is rewarded by a sum with a slope everywhere.
+        pub additive: u32,
+        /// Steps after a blow in which a fall is a knock-down; 0 if every fall is one.
+        pub stagger_steps: u32,
         /// Steps within `clinch` after which fighters are in one.
         pub clinch_steps: u32,
         /// Distance of a clinch, m.
@@ -72,6 +79,8 @@ crate::shader_params! {
         pub dense: f32,
         /// Reward of a step that knocks the opponent down.
         pub knockdown_bonus: f32,
+        /// Weight of the reward for an opponent that is far.
+        pub far_weight: f32,
         /// Weight of the damage in table 3.
         pub damage_weight: f32,
         /// Weight of being close in table 3.
@@ -176,8 +185,9 @@ pub fn twin(
 pub struct FighterStep {
     /// Its reward.
     pub reward: f32,
-    /// How it ends: [`FAILED`] for who has fallen or left the arena, [`SUCCESS`] for who remains; [`LEADS`] added
-    /// for who has knocked the other down more often or, that being equal, done more damage.
+    /// How it ends: [`FAILED`] for who has fallen or left the arena; for who remains [`SUCCESS`] by a knock-down, and
+    /// else [`TRUNCATED`]; [`LEADS`] added for who has knocked the other down more often or, that being equal, done
+    /// more damage.
     pub end: u32,
     /// 0 if the opponent is far, 1 if it is near.
     pub group: u32,
@@ -199,7 +209,9 @@ struct Exchange<'a> {
     out: [bool; FIGHTERS],
     /// Forces of the hands on the other's torso and head, N.
     given: [f32; FIGHTERS],
-    /// A fall together is nobody's knock-down.
+    /// Steps that are left in which a fall of the other is this one's doing.
+    stagger: [f32; FIGHTERS],
+    /// A fall together is nobody's knock-down, and a fall long after the last blow is the own fault of who falls.
     knocks_down: [bool; FIGHTERS],
 }
 
@@ -231,6 +243,7 @@ pub fn step(
         state[DAMAGE + me] += params.dt * exchange.given[me];
         state[KNOCKDOWNS + me] += is(exchange.knocks_down[me]);
         state[DOWN + me] = is(exchange.fallen[me]);
+        state[STAGGER_STEPS + me] = exchange.stagger[me];
     }
     [0, 1].map(|me| FighterStep {
         reward: rewards[me],
@@ -253,18 +266,24 @@ impl<'a> Exchange<'a> {
         let rules = params.fall_rules();
         let fallen = [0, 1].map(|me| has_fallen(&fighters.poses[fighters.root(me)..], &rules));
         let stood = |me: usize| state[DOWN + me] == 0.0;
+        let given = [0, 1].map(|me| {
+            let pairs = touching[me * PAIRS..][..PAIRS].iter();
+            pairs.map(|force| force.length()).sum()
+        });
+        let stagger = [0, 1].map(|me| match given[me] > 0.0 {
+            true => params.stagger_steps as f32,
+            false => (state[STAGGER_STEPS + me] - 1.0).max(0.0),
+        });
+        let caused = |me: usize| params.stagger_steps == 0 || stagger[me] > 0.0;
         Exchange {
             distance: gap.length(),
             mutual: terms::face_each_other(ahead[0], ahead[1]),
             alignment: -headings[0].dot(headings[1]),
             out: roots.map(|root| root.abs().max_element() > params.arena),
-            given: [0, 1].map(|me| {
-                touching[me * PAIRS..][..PAIRS]
-                    .iter()
-                    .map(|f| f.length())
-                    .sum()
-            }),
-            knocks_down: [0, 1].map(|me| fallen[1 - me] && stood(1 - me) && !fallen[me]),
+            knocks_down: [0, 1]
+                .map(|me| fallen[1 - me] && stood(1 - me) && !fallen[me] && caused(me)),
+            given,
+            stagger,
             fighters,
             params,
             toward,
@@ -276,12 +295,17 @@ impl<'a> Exchange<'a> {
     fn far_reward(&self, me: usize) -> f32 {
         let velocity = self.fighters.velocities[self.fighters.root(me)].linear;
         let along = self.toward[me].dot(velocity.truncate());
-        let facing = match self.params.facing {
-            1 => terms::facing_from_afar(self.ahead[me]),
-            _ => 0.0,
+        let (params, ahead, distance) = (self.params, self.ahead[me], self.distance);
+        let faces = |facing: f32| if params.facing == 1 { facing } else { 0.0 };
+        let far = match params.additive {
+            1 => approach(along, faces(0.5 * (1.0 + ahead)), distance),
+            _ => {
+                let velocity = terms::velocity(along, params.speed);
+                let facing = faces(terms::facing_from_afar(ahead));
+                terms::far(terms::position(distance), velocity, facing)
+            }
         };
-        let velocity = terms::velocity(along, self.params.speed);
-        self.params.dense * terms::far(terms::position(self.distance), velocity, facing)
+        params.dense * params.far_weight * far
     }
 
     /// Table 3's sum for a fighter with such a sum of squared joint accelerations.
@@ -326,7 +350,8 @@ impl<'a> Exchange<'a> {
         let over = [0, 1].map(|fighter| falls[fighter] || self.out[fighter]);
         match (over[me], over[1 - me]) {
             (true, _) => FAILED,
-            (false, true) => SUCCESS,
+            (false, true) if self.knocks_down[me] => SUCCESS,
+            (false, true) => TRUNCATED,
             (false, false) => RUNNING,
         }
     }

@@ -5,7 +5,7 @@ use crate::gpu::shader::boxing_reward::constants as at;
 
 /// Index of the impulses of each fighter's hands on the other's head and torso in this bout, N s, two numbers.
 pub const DAMAGE: usize = at::DAMAGE as usize;
-/// Index of the falls of each fighter's opponent in this bout, two numbers.
+/// Index of the knock-downs by each fighter in this bout, two numbers.
 pub const KNOCKDOWNS: usize = at::KNOCKDOWNS as usize;
 /// Index of 1 for each fighter that lay after the last step, two numbers.
 pub const DOWN: usize = at::DOWN as usize;
@@ -13,6 +13,8 @@ pub const DOWN: usize = at::DOWN as usize;
 pub const SQUARED_ACCELERATION: usize = at::SQUARED_ACCELERATION as usize;
 /// Index of the steps for which both have been in a clinch.
 pub const CLINCH_STEPS: usize = at::CLINCH_STEPS as usize;
+/// Index of the steps that are left in which a fall of each fighter's opponent is its doing, two numbers.
+pub const STAGGER_STEPS: usize = at::STAGGER_STEPS as usize;
 /// Index of the speeds of one fighter's joints and then the other's after the last step, rad/s.
 pub const JOINT_SPEEDS: usize = at::JOINT_SPEEDS as usize;
 /// Degrees of freedom of a fighter's root, which come before those of its joints.

@@ -7,6 +7,7 @@
 //! two [`fighters`], over a [`boxing_state`]. [`fallen`] says who lies.
 
 pub mod action_targets;
+pub mod approach;
 pub mod begin_track;
 pub mod boxing_observe;
 pub mod boxing_reward;

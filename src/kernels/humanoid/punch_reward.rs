@@ -1,6 +1,7 @@
 //! Reward, measures and end of a step of the tasks `punch` and `joystick`. Shader:
 //! `shaders/humanoid/punch_reward.wgsl`.
 
+use super::approach::approach;
 use super::punch_state::{FACING, FIRST, FIRST_SPEED, HAND_SPEED, HIT_STEPS, MOVING, PUNCH_STATE};
 use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::kernels::physics::collision::poses_of;
@@ -235,8 +236,8 @@ pub fn far_reward(
     let along = way.dot(velocity);
     let faces = params.facing == 1;
     if params.far == 2 {
-        let facing = if faces { 0.1 * (1.0 + alignment) } else { 0.2 };
-        return 0.6 * (along / 1.5).clamp(-0.3, 1.0) + facing + 0.2 / (1.0 + distance);
+        let facing = if faces { 0.5 * (1.0 + alignment) } else { 1.0 };
+        return approach(along, facing, distance);
     }
     if params.far == 3 {
         let short = (velocity - params.speed * way).length() / params.speed;

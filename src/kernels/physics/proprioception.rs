@@ -25,6 +25,11 @@ crate::shader_params! {
     }
 }
 
+/// Index of the root's velocity in the heading frame, m/s: after its height and rotation.
+pub const ROOT_VELOCITY: usize = 1 + 6;
+/// Index of its angular velocity there, rad/s.
+pub const ROOT_ANGULAR_VELOCITY: usize = ROOT_VELOCITY + 3;
+
 /// Numbers of the observation of a tree's character with `keys` key bodies.
 pub fn width(model: &Model, tree: usize, keys: usize) -> usize {
     let joints = model.joints.iter();
@@ -34,8 +39,8 @@ pub fn width(model: &Model, tree: usize, keys: usize) -> usize {
         JointKind::Ball => 6 + 3,
         JointKind::Hinge => 1 + 1,
     });
-    // Height, rotation, velocity and angular velocity of the root, free or not.
-    1 + 6 + 3 + 3 + numbers.sum::<usize>() + 3 * keys
+    // The root's, free or not, come first.
+    ROOT_ANGULAR_VELOCITY + 3 + numbers.sum::<usize>() + 3 * keys
 }
 
 /// Queues the shader on `gpu`.

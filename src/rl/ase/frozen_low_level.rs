@@ -1,5 +1,6 @@
 //! A low-level policy that learns no more, on the host.
 
+use super::{Ase, LatentDraw};
 use crate::env::EnvSpec;
 use crate::nn::Policy;
 use crate::rl::amp::FrozenDiscriminator;
@@ -10,8 +11,12 @@ pub struct FrozenLowLevel {
     pub policy: Policy,
     /// Tells what the policy was to move like.
     pub discriminator: FrozenDiscriminator,
-    /// Numbers that a body observes of itself, then those of a latent.
-    widths: [usize; 2],
+    /// What was chosen of its latents.
+    ase: Ase,
+    /// Checksum of the recordings that it learned.
+    data: u32,
+    /// Numbers that a body observes of itself.
+    style: usize,
 }
 
 impl FrozenLowLevel {
@@ -30,27 +35,37 @@ impl FrozenLowLevel {
         Ok(())
     }
 
-    /// The low level of a policy that has been [checked](Self::check).
+    /// The low level of a policy that has been [checked](Self::check), of bodies that observe `style` numbers of
+    /// themselves and recordings with the checksum `data`.
     pub fn new(
         policy: Policy,
         discriminator: FrozenDiscriminator,
-        widths: [usize; 2],
+        ase: Ase,
+        style: usize,
+        data: u32,
     ) -> FrozenLowLevel {
         FrozenLowLevel {
             policy,
             discriminator,
-            widths,
+            ase,
+            data,
+            style,
         }
+    }
+
+    /// Its latents, if it learned recordings with this checksum, of which each clip has such a share.
+    pub fn latents(&self, data: u32, shares: &[f32]) -> Option<LatentDraw> {
+        (data == self.data).then(|| LatentDraw::new(&self.ase, shares))
     }
 
     /// Numbers that a body observes of itself, then those of a latent.
     pub fn widths(&self) -> [usize; 2] {
-        self.widths
+        [self.style, self.ase.latent]
     }
 
     /// Numbers of a latent.
     pub fn latent(&self) -> usize {
-        self.widths[1]
+        self.ase.latent
     }
 
     /// The dimensions of environments of a body, as a policy sees them that acts through this one.
@@ -58,7 +73,7 @@ impl FrozenLowLevel {
     /// # Errors
     /// It is of another body.
     pub fn steered(&self, body: &EnvSpec) -> Result<EnvSpec, String> {
-        let (style, action) = (self.widths[0], self.policy.action());
+        let (style, action) = (self.style, self.policy.action());
         if (style, action) != (body.style, body.action) || body.observation.grid.is_some() {
             return Err(format!(
                 "it is of a body that observes {style} numbers of itself and has {action} drives, not of one with {} and {}",
@@ -86,7 +101,7 @@ impl FrozenLowLevel {
 
     /// Mean actions `[rows][action]` of bodies that observe `[rows][observation]`, under latents `[rows][latent]`.
     pub fn act(&self, observation: &[f32], latents: &[f32]) -> Vec<f32> {
-        let [style, latent] = self.widths;
+        let [style, latent] = self.widths();
         let latents = latents.chunks_exact(latent);
         let width = observation.len() / latents.len().max(1);
         let rows = observation.chunks_exact(width).zip(latents);

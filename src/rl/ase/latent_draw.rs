@@ -1,7 +1,8 @@
 //! Which latents there are, and how likely each is.
 
 use super::{Ase, LowLevel};
-use crate::kernels::learn::advance_latents::to_sphere;
+use crate::env::humanoid::driver::DriverState;
+use crate::kernels::learn::advance_latents::{Params, draw, to_sphere};
 use crate::kernels::rng::{gaussian, random4};
 
 /// Random streams: of the clips' latents, of those about them, and of any.
@@ -60,6 +61,33 @@ impl LatentDraw {
             .collect();
         to_sphere(&mut latent);
         latent
+    }
+
+    /// Draws the latents whose time is over, of so many rows, by a `seed`.
+    pub fn advance(&self, rows: usize, seed: u32, state: &mut DriverState) {
+        let [least, most] = self.kept_steps;
+        let params = Params {
+            rows: rows as u32,
+            first: 0,
+            seed,
+            step_counter: state.steps as u32,
+            at: 0,
+            final_row: 0,
+            least,
+            most,
+            opening: 0,
+            spread: self.spread,
+        };
+        state.latents.resize(rows * self.dim, 0.0);
+        state.kept.resize(rows, 0);
+        let latents = state.latents.chunks_exact_mut(self.dim);
+        for (row, (latent, kept)) in latents.zip(&mut state.kept).enumerate() {
+            if *kept == 0 {
+                *kept = draw(row as u32, &self.centres, latent, &params);
+            }
+            *kept -= 1;
+        }
+        state.steps += 1;
     }
 
     /// So many latents of all directions, the same ones every time.

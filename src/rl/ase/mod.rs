@@ -6,25 +6,25 @@
 //!
 //! When learning is over a [`FrozenLowLevel`] is left, whose skills a high-level policy may steer: [`HighLevelEnv`]
 //! makes environments of a body into environments of latents, and a [`HighLevelDriver`] moves bodies on the host, a
-//! [`FixedLatentDriver`] those whom nobody steers.
+//! [`ScriptedDriver`] those whom no policy steers.
 
 mod batch_low_level;
-mod fixed_latent_driver;
 mod frozen_low_level;
 mod high_level_driver;
 mod high_level_env;
 mod latent_draw;
 mod latent_driver;
 mod latent_env;
+mod scripted_driver;
 
 use super::amp::{LatentUse, SkillRewards};
-pub use fixed_latent_driver::FixedLatentDriver;
 pub use frozen_low_level::FrozenLowLevel;
 pub use high_level_driver::HighLevelDriver;
 pub use high_level_env::HighLevelEnv;
 pub use latent_draw::LatentDraw;
 pub use latent_driver::LatentDriver;
 pub use latent_env::LatentEnv;
+pub use scripted_driver::{Script, ScriptedDriver, Stride};
 use serde::{Deserialize, Serialize};
 
 /// Steps of the low level that a decision of a high level lasts.

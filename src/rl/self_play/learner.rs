@@ -15,8 +15,8 @@ pub struct SelfPlayLearner {
     inner: Box<dyn Algorithm>,
     config: SelfPlay,
     pool: Pool,
-    /// What repeats the action at rest.
-    scripted: Opponent,
+    /// Who is there from the beginning.
+    first: Vec<Opponent>,
     /// Steps of an update.
     rollout_length: usize,
     /// Numbers of an observation and of an action.
@@ -26,8 +26,7 @@ pub struct SelfPlayLearner {
 }
 
 impl SelfPlayLearner {
-    /// A learner whose opponents are, to begin with, one that repeats the action at rest and the learner's policy as it
-    /// is now. Of the environments' statistics, `fractions` of the steps are told by other names.
+    /// A learner whose opponents are, to begin with, the `first` and the learner's policy as it is now. Of the environments' statistics, `fractions` of the steps are told by other names.
     ///
     /// # Errors
     /// The environments are not of self-play, or the device was lost.
@@ -35,6 +34,7 @@ impl SelfPlayLearner {
         inner: Box<dyn Algorithm>,
         config: &SelfPlay,
         envs: &EnvBatch,
+        first: Vec<Opponent>,
         rollout_length: usize,
         fractions: &'static [(&'static str, &'static str)],
     ) -> Result<Self> {
@@ -43,12 +43,11 @@ impl SelfPlayLearner {
             bail!("a learner by self-play takes environments of self-play");
         }
         let spec = envs.spec();
-        let scripted = Opponent::at_rest(envs.rest_action(), spec.action);
         let mut learner = SelfPlayLearner {
             pool: Pool::new(config, Vec::new()),
             config: *config,
             inner,
-            scripted,
+            first,
             rollout_length,
             dims: [spec.observation.dim(), spec.action],
             fractions,
@@ -64,7 +63,8 @@ impl SelfPlayLearner {
 
     fn begin_pool(&mut self) -> Result<()> {
         let own = Opponent::Frozen(Box::new(self.inner.policy()?));
-        self.pool = Pool::new(&self.config, vec![self.scripted.clone(), own]);
+        let all = self.first.iter().cloned().chain([own]);
+        self.pool = Pool::new(&self.config, all.collect());
         Ok(())
     }
 

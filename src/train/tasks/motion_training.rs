@@ -13,17 +13,18 @@ use crate::physics::motion_library::MotionLibrary;
 use crate::rl::Algorithm;
 use crate::rl::amp::SkillRewards;
 use crate::rl::ase::{
-    FixedLatentDriver, FrozenLowLevel, HighLevelDriver, HighLevelEnv, LatentDraw, LatentDriver,
-    LatentEnv,
+    FrozenLowLevel, HighLevelDriver, HighLevelEnv, LatentDraw, LatentDriver, LatentEnv, Script,
+    ScriptedDriver,
 };
-use crate::rl::self_play::{SelfPlay, SelfPlayEnv, SelfPlayLearner};
+use crate::rl::self_play::{Opponent, SelfPlay, SelfPlayEnv, SelfPlayLearner};
+use crate::train::anchors;
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError};
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::fingerprint::Fingerprint;
 use crate::train::low_level;
 use crate::train::task::{Loaded, Task, ppo_learner};
-use crate::train::tournament::Bouts;
+use crate::train::tournament::{Bouts, TournamentPlayer};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
@@ -137,18 +138,52 @@ pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
 impl<T: MotionTask> MotionTraining<T> {
     fn rate(&self, policy: &Policy, episodes: usize) -> T::Report {
         let task = self.task.judged(&self.library, EPISODES_SEED);
-        let (driver, still) = (self.driver(policy), self.still(&*task));
-        let drivers = [&*driver, &*still];
+        let (driver, anchors) = (self.driver(policy), self.anchors(&*task));
+        let drivers = [&*driver, &*anchors[0].driver];
         T::evaluate(task, &self.library, drivers, episodes, EPISODES_SEED)
     }
 
-    /// A driver that does nothing: it holds the pose at rest or, over a low level, one latent.
-    fn still(&self, task: &dyn HumanoidTask) -> Box<dyn BodyDriver> {
-        let observation = spec(task.model(), task.observation(), 1).observation.dim();
-        match &self.low_level {
-            Some(low_level) => Box::new(FixedLatentDriver::new(low_level, observation)),
-            None => Box::new(RepeatAction::new(task.rest_action(), observation)),
+    /// What there is to do over a low level by a script, the least first.
+    fn scripts(&self, low_level: &FrozenLowLevel) -> Vec<(&'static str, Script)> {
+        let library = &self.library;
+        let clips = 0..library.motions().len();
+        let shares: Vec<f32> = clips.map(|clip| library.share(clip)).collect();
+        match low_level.latents(motions::fingerprint(library), &shares) {
+            Some(draw) => anchors::scripts(&draw, library, low_level.widths()[0]),
+            // Which clip of its own it moves like under which latent is not known here.
+            None => vec![anchors::unsteered(low_level.latent())],
         }
+    }
+
+    /// Whom nobody has trained, who does least first.
+    fn anchors(&self, task: &dyn HumanoidTask) -> Vec<TournamentPlayer> {
+        let observation = spec(task.model(), task.observation(), 1).observation.dim();
+        let player = |name: &str, driver: Box<dyn BodyDriver>| TournamentPlayer {
+            name: name.into(),
+            driver,
+        };
+        let Some(low_level) = &self.low_level else {
+            let still = RepeatAction::new(task.rest_action(), observation);
+            return vec![player("(does nothing)", Box::new(still))];
+        };
+        let scripts = self.scripts(low_level).into_iter();
+        let driver = |script| Box::new(ScriptedDriver::new(low_level, script, observation));
+        scripts
+            .map(|(name, script)| player(name, driver(script)))
+            .collect()
+    }
+
+    /// The opponents who do the same all the time, with whom a training by self-play begins.
+    fn first_opponents(&self, envs: &EnvBatch) -> Vec<Opponent> {
+        let Some(low_level) = &self.low_level else {
+            return vec![Opponent::Scripted(envs.rest_action())];
+        };
+        let scripts = self.scripts(low_level).into_iter();
+        let kept = scripts.filter_map(|(_, script)| match script {
+            Script::Keep(latent) => Some(Opponent::Scripted(latent)),
+            _ => None,
+        });
+        kept.collect()
     }
 }
 
@@ -219,7 +254,8 @@ impl<T: MotionTask> Task for MotionTraining<T> {
             return Ok(learner);
         };
         let (steps, fractions) = (config.ppo.rollout_length, T::STEP_FRACTIONS);
-        let learner = SelfPlayLearner::new(learner, self_play, envs, steps, fractions)?;
+        let first = self.first_opponents(envs);
+        let learner = SelfPlayLearner::new(learner, self_play, envs, first, steps, fractions)?;
         Ok(Box::new(learner))
     }
 
@@ -259,8 +295,8 @@ impl<T: MotionTask> Task for MotionTraining<T> {
 
     fn bouts(&self) -> Option<Bouts> {
         let task = T::bouts(self.task.judged(&self.library, EPISODES_SEED))?;
-        let still = self.still(&*task);
-        Some(Bouts { task, still })
+        let anchors = self.anchors(&*task);
+        Some(Bouts { task, anchors })
     }
 
     #[cfg(feature = "report")]

@@ -325,6 +325,7 @@ fn only_hands_on_torso_and_head_do_damage() {
 fn a_fall_the_border_and_time_end_a_bout_for_both() {
     let boxing = Boxing {
         rules: rules(5.0 / 30.0),
+        stagger_s: 0.0,
         ..Boxing::default()
     };
     let mut envs = opened(&boxing, 4);
@@ -337,9 +338,9 @@ fn a_fall_the_border_and_time_end_a_bout_for_both() {
         put(&mut envs.batch.worlds[world].state.q, 1, [1.5, 0.0]);
     }
     let played = steps(&mut envs, 1);
-    use termination::{FAILED, RUNNING, SUCCESS};
+    use termination::{FAILED, RUNNING, SUCCESS, TRUNCATED};
     let expected = [
-        SUCCESS, FAILED, FAILED, SUCCESS, FAILED, FAILED, RUNNING, RUNNING,
+        SUCCESS, FAILED, FAILED, TRUNCATED, FAILED, FAILED, RUNNING, RUNNING,
     ];
     assert_eq!(played.ends, expected);
     assert_eq!(played.rewards[0], boxing.knockdown_bonus);
@@ -472,6 +473,7 @@ fn every_corner_has_its_own_driver() {
 fn an_evaluation_tells_who_won() {
     let boxing = Boxing {
         rules: rules(6.0),
+        stagger_s: 0.0,
         ..Boxing::default()
     };
     let task = task(&boxing);

@@ -1,6 +1,7 @@
 mod boxing;
 mod latents;
 mod mirrored;
+mod scripts;
 mod self_play;
 mod skills;
 mod stand;

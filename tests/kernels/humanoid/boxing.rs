@@ -4,7 +4,8 @@
 use crate::inputs::{Draw, SIZES, close};
 use footwork::kernels::humanoid::boxing_reward::{FighterStep, MEASURES, PAIRS, Params, step};
 use footwork::kernels::humanoid::boxing_state::{
-    CLINCH_STEPS, DAMAGE, DOWN, JOINT_SPEEDS, KNOCKDOWNS, SQUARED_ACCELERATION, state_dim,
+    CLINCH_STEPS, DAMAGE, DOWN, JOINT_SPEEDS, KNOCKDOWNS, SQUARED_ACCELERATION, STAGGER_STEPS,
+    state_dim,
 };
 use footwork::kernels::humanoid::boxing_terms as terms;
 use footwork::kernels::humanoid::fighters::Fighters;
@@ -13,7 +14,7 @@ use footwork::kernels::humanoid::{
     boxing_observe, boxing_reward, joint_accelerations, place_fighters,
 };
 use footwork::kernels::physics::smooth_dynamics::POSE_DIM;
-use footwork::kernels::termination::{FAILED, LEADS, RUNNING, SUCCESS};
+use footwork::kernels::termination::{FAILED, LEADS, RUNNING, SUCCESS, TRUNCATED};
 use footwork::physics::pose::Pose;
 use footwork::physics::spatial::Spatial;
 use glam::{Quat, Vec2, Vec3};
@@ -48,6 +49,8 @@ fn params(envs: usize) -> Params {
         min_body: 0.15,
         fall_ends: 1,
         facing: 1,
+        additive: 0,
+        stagger_steps: 0,
         clinch_steps: 3,
         clinch: 0.5,
         arena: 3.0,
@@ -58,6 +61,7 @@ fn params(envs: usize) -> Params {
         damage_taken: 2.0,
         dense: 1.0,
         knockdown_bonus: 500.0,
+        far_weight: 1.0,
         damage_weight: 1.0,
         close_weight: 4.0,
         facing_weight: 10.0,
@@ -315,7 +319,7 @@ fn bouts_end_as_they_should() {
     assert_eq!((measures[2], measures[MEASURES + 2]), (0.0, 0.0));
     // Who leaves the arena has failed; the other has no lead by it.
     let ([red, blue], measures) = fought([false, false], [-0.5, 3.01], &params(1));
-    assert_eq!((red.end, blue.end), (SUCCESS, FAILED));
+    assert_eq!((red.end, blue.end), (TRUNCATED, FAILED));
     assert_eq!((measures[3], measures[MEASURES + 3]), (0.0, 1.0));
     let ([red, blue], _) = fought([false, false], [2.0, 3.01], &params(1));
     assert!((red.reward - blue.reward - 30.0).abs() < 1e-3);
@@ -347,6 +351,54 @@ fn a_fall_that_does_not_end_the_bout_counts_once() {
     assert_eq!(ring.state[DOWN + 1], 0.0);
     ring.lay(1);
     assert_eq!(ring.step(&params).0[0].reward, 500.0);
+}
+
+#[test]
+fn only_a_fall_soon_after_a_blow_is_a_knock_down() {
+    let params = Params {
+        stagger_steps: 3,
+        ..params(1)
+    };
+    for (since, knocks_down) in [(0, true), (2, true), (3, false)] {
+        let mut ring = Ring::new([-0.5, 0.5], [0.0, PI]);
+        ring.touching[0] = Vec3::X;
+        for _ in 0..since {
+            ring.step(&params);
+            ring.touching[0] = Vec3::ZERO;
+        }
+        ring.lay(1);
+        let ([red, blue], measures) = ring.step(&params);
+        let end = if knocks_down { SUCCESS } else { TRUNCATED };
+        // Damage leads where no knock-down does.
+        assert_eq!((red.end, blue.end), (end + LEADS, FAILED), "{since}");
+        assert_eq!(red.reward == 500.0, knocks_down, "{since}");
+        assert_eq!(measures[2] == 1.0, knocks_down, "{since}");
+    }
+    // Blue's own blows are no reason for it to fall.
+    let mut ring = Ring::new([-0.5, 0.5], [0.0, PI]);
+    ring.touching[PAIRS] = Vec3::X;
+    ring.lay(1);
+    assert_eq!(ring.step(&params).0[0].end, TRUNCATED);
+}
+
+#[test]
+fn the_way_to_a_far_opponent_has_a_slope_everywhere() {
+    let params = Params {
+        additive: 1,
+        far_weight: 2.0,
+        dense: 0.5,
+        ..params(1)
+    };
+    let reward = |gap: f32, yaw: f32, speed: f32| {
+        let mut ring = Ring::new([-0.5 * gap, 0.5 * gap], [yaw, PI]);
+        ring.velocities[PELVIS].linear = Vec3::X * speed;
+        ring.rewards(&params)[0]
+    };
+    assert!((reward(4.0, 0.0, 1.5) - 0.6 - 0.2 - 0.04).abs() < 1e-5);
+    assert!((reward(4.0, PI, 0.0) - 0.04).abs() < 1e-5);
+    assert!(reward(3.0, 1.0, 0.0) > reward(4.0, 1.0, 0.0));
+    assert!(reward(4.0, 2.0, 0.1) > reward(4.0, 2.1, 0.1));
+    assert!(reward(4.0, 2.0, 0.0) > reward(4.0, 2.0, -0.1));
 }
 
 #[test]
@@ -391,6 +443,7 @@ fn states(draw: &mut Draw, envs: usize) -> Vec<f32> {
         for fighter in 0..2 {
             state[(KNOCKDOWNS + fighter) * envs + env] = ((env + fighter) % 3) as f32;
             state[(DOWN + fighter) * envs + env] = (env % 2) as f32;
+            state[(STAGGER_STEPS + fighter) * envs + env] = (env % 3) as f32;
         }
         state[CLINCH_STEPS * envs + env] = (env % 4) as f32;
         for fighter in 0..2 {
@@ -411,6 +464,8 @@ fn boxing_rewards_agree() {
         let params = Params {
             fall_ends: u32::from(case % 3 > 0),
             facing: u32::from(case % 4 > 0),
+            additive: u32::from(case % 2 > 0),
+            stagger_steps: 2 * (case % 3) as u32,
             damage_taken: 0.5 * case as f32,
             damage_scale: 0.01,
             damage_weight: 2.0,
@@ -420,10 +475,13 @@ fn boxing_rewards_agree() {
         let rows = 2 * envs;
         let poses = poses(&mut draw, envs);
         let dynamics = draw.normals((5 + 12 * BODIES) * envs);
-        // Blows from light to harder than the reward's bound.
+        // No blows, and from light ones to some harder than the reward's bound.
         let mut forces = draw.normals(3 * (2 * BODIES + 2 * PAIRS) * envs);
         for (at, force) in forces.iter_mut().enumerate() {
-            *force *= 10f32.powi((at % envs % 6) as i32);
+            *force *= match at % envs % 6 {
+                0 => 0.0,
+                strength => 10f32.powi(strength as i32),
+            };
         }
         let state = states(&mut draw, envs);
         let forms = forms!(
@@ -440,8 +498,9 @@ fn boxing_rewards_agree() {
             assert_eq!((&got.3, &got.4), (&twin.3, &twin.4), "{form}");
         }
         if envs == 1000 {
-            for end in [RUNNING, SUCCESS, FAILED] {
-                assert!(twin.3.iter().any(|&found| found % LEADS == end), "{end}");
+            for end in [RUNNING, SUCCESS, TRUNCATED, FAILED] {
+                let found = twin.3.iter().any(|&found| found % LEADS == end);
+                assert!(found || end == SUCCESS && params.fall_ends == 0, "{end}");
             }
             assert!(twin.1.contains(&500.0) && twin.4.contains(&0) && twin.4.contains(&1));
         }

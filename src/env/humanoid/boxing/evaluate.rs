@@ -29,7 +29,7 @@ pub struct BoxingReport {
     pub from_behind: f64,
     /// Clinches of a bout.
     pub clinches_per_bout: f64,
-    /// Mean knock-downs of a bout by each: falls of the other, who may have fallen by itself.
+    /// Mean knock-downs of a bout by each.
     pub knockdowns: [f64; FIGHTERS],
     /// Mean impulse of each one's hands on the other's torso and head in a bout, N s.
     pub damage: [f64; FIGHTERS],

@@ -1,9 +1,9 @@
 //! The task `box`: two fighters in an arena, each of which is an agent.
 //!
 //! [`Boxing`] are its choices, [`BoxingTask`] plays them, and [`evaluate`](evaluate::evaluate) lets two drivers
-//! fight. A fighter that falls, or leaves the arena, has failed; the other's bout is then over, too, and worth nothing
-//! more: it is the [`SUCCESS`](crate::kernels::termination::SUCCESS) of who remains, whose value does not go on. Out of
-//! steps the value goes on for both. A bout is won by who has knocked the other down more often or, that being equal,
+//! fight. A fighter that falls, or leaves the arena, has failed; the other's bout is then over, too. By a knock-down, a
+//! fall soon after a blow, it is that one's [`SUCCESS`](crate::kernels::termination::SUCCESS) and worth nothing more;
+//! else its value goes on, as it does for both when time is up. A bout is won by who has knocked the other down more often or, that being equal,
 //! done more damage; who has failed has won nothing. Damage is the impulse of a fighter's hands on the other's torso and
 //! head, friction included: of no other part, and never of the ground.
 
@@ -105,6 +105,8 @@ fn params(boxing: &Boxing, model: &Model) -> Params {
         min_body: boxing.rules.min_body_height,
         fall_ends: u32::from(boxing.fall_ends),
         facing: u32::from(boxing.facing),
+        additive: u32::from(boxing.additive),
+        stagger_steps: boxing.stagger_steps(),
         clinch_steps: boxing.clinch_steps(),
         clinch: boxing.clinch_distance,
         arena: boxing.arena,
@@ -115,6 +117,7 @@ fn params(boxing: &Boxing, model: &Model) -> Params {
         damage_taken: 0.0,
         dense: 0.0,
         knockdown_bonus: boxing.knockdown_bonus,
+        far_weight: boxing.far_weight,
         damage_weight: boxing.damage_weight,
         close_weight: boxing.close_weight,
         facing_weight: boxing.facing_weight,

@@ -1,0 +1,102 @@
+//! A low level that moves bodies by a script.
+
+use super::{FrozenLowLevel, LatentDraw};
+use crate::env::humanoid::driver::{BodyDriver, DriverState};
+use crate::kernels::learn::low_level_input::to_latent;
+use std::sync::Arc;
+
+/// Steps for which a body goes on as it has chosen.
+const CHOICE_STEPS: usize = 15;
+/// The same in seconds.
+const CHOICE_S: f32 = CHOICE_STEPS as f32 / 30.0;
+
+/// Metres that facing the place is worth: who goes backwards does not see it.
+const FACING: f32 = 2.0;
+
+/// By what nobody had to learn.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Script {
+    /// One latent is kept for good.
+    Keep(Vec<f32>),
+    /// Latents change as in training, by a seed.
+    Random(LatentDraw, u32),
+    /// The body goes towards what it observes at the index `target`, two numbers in its heading frame, m: by one of
+    /// `strides` at a time.
+    Approach {
+        /// Index in the observation.
+        target: usize,
+        /// What there is to choose from; not empty.
+        strides: Vec<Stride>,
+    },
+}
+
+/// How a body moves under a latent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stride {
+    /// The latent.
+    pub latent: Vec<f32>,
+    /// Speed along the heading, m/s.
+    pub forward: f32,
+    /// Speed at which the heading turns to the left, rad/s.
+    pub turn: f32,
+}
+
+impl Script {
+    /// Keeps the latent that an action of zeros stands for, of so many numbers.
+    pub fn unsteered(latent: usize) -> Script {
+        let mut kept = vec![0.0; latent];
+        to_latent(&mut kept);
+        Script::Keep(kept)
+    }
+}
+
+/// A low level whose latents are those of a script.
+pub struct ScriptedDriver {
+    low_level: Arc<FrozenLowLevel>,
+    script: Script,
+    /// Numbers of an observation.
+    observation: usize,
+}
+
+impl ScriptedDriver {
+    /// Who moves bodies that observe so many numbers.
+    pub fn new(low_level: &Arc<FrozenLowLevel>, script: Script, observation: usize) -> Self {
+        ScriptedDriver {
+            low_level: low_level.clone(),
+            script,
+            observation,
+        }
+    }
+}
+
+impl BodyDriver for ScriptedDriver {
+    fn act(&self, observation: &[f32], state: &mut DriverState) -> Vec<f32> {
+        let rows = observation.chunks_exact(self.observation);
+        match &self.script {
+            Script::Keep(latent) => state.latents = latent.repeat(rows.len()),
+            Script::Random(draw, seed) => draw.advance(rows.len(), *seed, state),
+            Script::Approach { target, strides } if state.steps.is_multiple_of(CHOICE_STEPS) => {
+                let latents =
+                    rows.flat_map(|row| nearest(strides, [row[*target], row[target + 1]]));
+                state.latents = latents.copied().collect();
+            }
+            Script::Approach { .. } => {}
+        }
+        if !matches!(self.script, Script::Random(..)) {
+            state.steps += 1;
+        }
+        self.low_level.act(observation, &state.latents)
+    }
+}
+
+/// The latent under which a body comes nearest to a place, and faces it most, while it goes on so.
+fn nearest(strides: &[Stride], [ahead, left]: [f32; 2]) -> &[f32] {
+    let bearing = left.atan2(ahead);
+    let score = |stride: &Stride| {
+        let turned = stride.turn * CHOICE_S;
+        let nearer = stride.forward * CHOICE_S * (bearing - 0.5 * turned).cos();
+        nearer + FACING * (bearing - turned).cos()
+    };
+    let best = strides.iter().max_by(|a, b| score(a).total_cmp(&score(b)));
+    best.map_or(&[], |stride| &stride.latent)
+}
