@@ -27,10 +27,6 @@ pub fn scripts(
     let clips: Vec<ClipMotion> = (0..latents.len())
         .map(|clip| ClipMotion::new(library, clip))
         .collect();
-    // A step counts more than a gesture.
-    let quietest = least(0..clips.len(), |clip| {
-        3.0 * clips[clip].speed + clips[clip].hands
-    });
     let mut boxing: Vec<usize> = (0..clips.len())
         .filter(|&clip| library.kind(clip) == BOXING)
         .collect();
@@ -38,6 +34,8 @@ pub fn scripts(
         boxing = (0..clips.len()).collect();
     }
     let quickest = least(boxing, |clip| -clips[clip].hands);
+    let others = (0..clips.len()).filter(|&clip| clip != quickest || clips.len() == 1);
+    let quietest = least(others, |clip| clips[clip].speed);
     let strides = clips.iter().zip(&latents).map(|(clip, latent)| Stride {
         latent: latent.clone(),
         forward: clip.forward,

@@ -66,10 +66,10 @@ pub fn steered(config: &Config, body: EnvSpec) -> Result<EnvSpec, ConfigError> {
     let Some(run) = &config.skills else {
         return Ok(body);
     };
-    let fits = |low_level: FrozenLowLevel| {
-        let spec = low_level.steered(&body);
-        spec.map_err(|why| anyhow!("the low level {} does not fit: {why}", run.display()))
-    };
-    let spec = load(run).and_then(fits);
-    spec.map_err(|error| ConfigError::LowLevel(format!("{error:#}")))
+    let low_level = load(run).map_err(|error| ConfigError::LowLevel(format!("{error:#}")))?;
+    config.check_style_rewards(low_level.discriminator.loss())?;
+    low_level.steered(&body).map_err(|why| {
+        let run = run.display();
+        ConfigError::LowLevel(format!("the low level {run} does not fit: {why}"))
+    })
 }

@@ -20,7 +20,9 @@ pub fn of_training(spec: &EnvSpec, config: &Config) -> u64 {
     // Observed, then, where an episode ended, observed once more; a row of what is learned.
     let sample = 3 * observation + 4 * action + windows + 16;
     let samples = (config.ppo.rollout_length * spec.rows()) as u64;
-    samples * sample * NUMBER + spec.envs as u64 * ENVIRONMENT
+    // Of an opponent no rollout is kept.
+    let bodies = if config.self_play.is_some() { 2 } else { 1 };
+    samples * sample * NUMBER + bodies * spec.envs as u64 * ENVIRONMENT
 }
 
 /// Refuses what needs more bytes than there are.

@@ -140,6 +140,14 @@ fn what_cannot_be_steered_is_refused() {
     ] {
         place.refused(words, 2, &[part]);
     }
+    place.done(&format!(
+        "train skills {SMALL} --set amp.loss=hinge --steps 64 --out hinge"
+    ));
+    place.refused(
+        "train punch --skills hinge --task-weight pd --out run",
+        2,
+        &["task_weight.rule is pd", "hinge"],
+    );
     place.put_low_level(STYLE - 1, 1);
     place.refused(
         "train punch --skills low --out run",

@@ -43,21 +43,34 @@ impl Config {
         if chosen.rule == WeightRule::Fixed || self.skills.is_some() {
             return Ok(());
         }
-        let why = match &self.amp {
-            Some(amp) if amp.loss == DiscriminatorLoss::Hinge => {
-                "it compares style rewards by their ratio, and those of amp.loss = \"hinge\" may be negative".into()
-            }
-            Some(amp) if amp.task_weight > 0.0 => return Ok(()),
-            _ => format!(
+        match &self.amp {
+            Some(amp) if amp.task_weight > 0.0 => self.check_style_rewards(amp.loss),
+            _ => Err(no_rule(format!(
                 "it weighs the rewards of task and style, and the task `{}` has but one of them",
                 self.task.name
-            ),
-        };
-        Err(ConfigError::Value {
-            key: "task_weight.rule",
-            value: "pd".into(),
-            why,
-        })
+            ))),
+        }
+    }
+
+    /// Refuses a rule for the weights that style rewards of a discriminator with this loss do not allow.
+    pub(in crate::train) fn check_style_rewards(
+        &self,
+        loss: DiscriminatorLoss,
+    ) -> Result<(), ConfigError> {
+        match (self.task_weight.rule, loss) {
+            (WeightRule::Pd, DiscriminatorLoss::Hinge) => Err(no_rule(
+                "it compares style rewards by their ratio, and those of amp.loss = \"hinge\" may be negative".into(),
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn no_rule(why: String) -> ConfigError {
+    ConfigError::Value {
+        key: "task_weight.rule",
+        value: "pd".into(),
+        why,
     }
 }
 
