@@ -100,12 +100,14 @@ fn fighter_for(run: &Run, own: &Run) -> Result<OwnFighter> {
     let env = own.task.body().map(|body| body.open(0));
     let Some(env) = env.filter(|env| env.task().model().trees.len() > 1) else {
         return refused(format!(
-            "{own_path} is a run of `{own_task}`, which has learned to go to nobody: --fighter takes a run of `punch`,              `joystick` or `box`"
+            "{own_path} is a run of `{own_task}`, which has learned to go to nobody: --fighter takes a run of `punch`, \
+             `joystick` or `box`"
         ));
     };
     if own.task.fingerprint().low_level != run.task.fingerprint().low_level {
         return refused(format!(
-            "{own_path} moves by another low level than {run_path}: --fighter takes a run that was trained with the same              --skills"
+            "{own_path} moves by another low level than {run_path}: --fighter takes a run that was trained with the same \
+             --skills"
         ));
     }
     let policy = own.checkpoint(&own.path)?.policy;

@@ -11,10 +11,10 @@ const HALF: [f32; 2] = [0.03, 0.004];
 /// Brighter than what is lit, so that it glows.
 const FLASH: Colour = [3.0, 2.1, 0.5];
 /// Radius of a flash, m, at a force of [`FULL`] N; it grows with the force's square root.
-const RADIUS: f32 = 0.13;
+const RADIUS: f32 = 0.22;
 const FULL: f32 = 500.0;
 /// Radii of the largest flash.
-const LARGEST: f32 = 1.8;
+const LARGEST: f32 = 1.5;
 /// From its middle to its tips, radii.
 const SPIKE: f32 = 2.0;
 
