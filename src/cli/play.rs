@@ -1,5 +1,6 @@
 //! `footwork play`.
 
+use super::Usage;
 use super::run::{Moved, Run};
 use super::say::tell;
 use anyhow::Result;
@@ -13,6 +14,7 @@ use footwork::train::checkpoint::Checkpoint;
 use footwork::train::controller::Controller;
 use footwork::train::data;
 use footwork::view::body_playthrough::BodyContext;
+use footwork::view::own_fighter::OwnFighter;
 use footwork::view::playthrough::PlaythroughContext;
 use footwork::viewer::policies::PolicyEntry;
 use footwork::viewer::window;
@@ -30,6 +32,10 @@ pub struct Play {
     /// Where the low level is now that the run steers, if it has been moved
     #[arg(long, value_name = "RUN", requires = "run")]
     skills: Option<PathBuf>,
+    /// Whose policy moves you where you fight in a bout of RUN: a run of `punch`, `joystick` or `box` over the same low
+    /// level; without it, RUN's own
+    #[arg(long, value_name = "RUN", requires = "run")]
+    fighter: Option<PathBuf>,
 }
 
 impl Play {
@@ -47,10 +53,16 @@ impl Play {
         };
         let run = Arc::new(Run::open(run, moved)?);
         run.checkpoint(&run.path)?;
+        let fighter = self.fighter.as_ref();
+        let fighter = fighter.map(|own| fighter_for(&run, &Run::open(own, moved)?));
+        let fighter = fighter.transpose()?;
         let title = format!("footwork: {}", run.folder.path().display());
         if let Some(body) = run.task.body() {
             let policies = policies(&run, |run, of| BodyPolicy::new(of, &run.config, &*run.task))?;
-            let context = BodyContext::new(body);
+            let mut context = BodyContext::new(body);
+            if let Some(fighter) = fighter {
+                context = context.with_fighter(fighter);
+            }
             return window::play_body(&Gpu::drawing()?, &title, context, policies);
         }
         let locomotion = run.locomotion("play")?;
@@ -73,6 +85,34 @@ impl Play {
         let context = PlaythroughContext::new(Arc::new(matcher), task, Style::BEST);
         window::play(&Gpu::drawing()?, "footwork", context, Vec::new())
     }
+}
+
+/// Who obeys commands in the bouts of a run, moved by the policy of another one.
+fn fighter_for(run: &Run, own: &Run) -> Result<OwnFighter> {
+    let refused = |why: String| Err(Usage(why).into());
+    let [run_path, own_path] = [run, own].map(|run| run.folder.path().display());
+    let [run_task, own_task] = [run, own].map(|run| &run.config.task.name);
+    if run.task.bouts().is_none() {
+        return refused(format!(
+            "{run_path} is a run of `{run_task}`, in which nobody fights: --fighter is for runs of `box`"
+        ));
+    }
+    let env = own.task.body().map(|body| body.open(0));
+    let Some(env) = env.filter(|env| env.task().model().trees.len() > 1) else {
+        return refused(format!(
+            "{own_path} is a run of `{own_task}`, which has learned to go to nobody: --fighter takes a run of `punch`, \
+             `joystick` or `box`"
+        ));
+    };
+    if own.task.fingerprint().low_level != run.task.fingerprint().low_level {
+        return refused(format!(
+            "{own_path} moves by another low level than {run_path}: --fighter takes a run that was trained with the same \
+             --skills"
+        ));
+    }
+    let policy = own.checkpoint(&own.path)?.policy;
+    let driver = own.task.driver(&policy);
+    Ok(OwnFighter::new(env, Some(driver.into())))
 }
 
 /// A run's checkpoints, of each of which `load` makes a policy. The requested one is the last: it is shown

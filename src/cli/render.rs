@@ -7,7 +7,7 @@ use super::say::say;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use footwork::env::humanoid::driver::BodyDriver;
-use footwork::env::humanoid::task::play;
+use footwork::env::humanoid::task::{CpuHumanoidEnv, play};
 use footwork::gpu::Gpu;
 use footwork::nn::Policy;
 use footwork::playback::player::Style;
@@ -20,6 +20,7 @@ use footwork::view::image_files::{self, Output};
 use footwork::view::latent_path::SteeredDriver;
 use footwork::view::latent_strips::latent_strips;
 use footwork::view::playthrough::{Playthrough, PlaythroughContext};
+use footwork::view::recorded_bout::RecordedBout;
 use footwork::view::strip::film_strip;
 use footwork::view::{Camera, RenderTarget, Renderer};
 use indicatif::ProgressIterator;
@@ -189,18 +190,25 @@ impl Render {
         }
         let mut envs = body.open(episode);
         let model = envs.task().model().clone();
+        let mut bout = body.bouts.clone().map(RecordedBout::new);
+        let after = |envs: &CpuHumanoidEnv| {
+            if let Some(bout) = &mut bout {
+                bout.push(envs);
+            }
+        };
         let motion = match latents {
             ChosenLatents::Path(path) => {
-                play::record(&mut envs, &SteeredDriver { driver, path }, task)
+                play::record(&mut envs, &SteeredDriver { driver, path }, task, after)
             }
-            _ => play::record(&mut envs, driver, task),
+            _ => play::record(&mut envs, driver, task, after),
         };
+        let bout = bout.as_ref();
         if let Output::Png(path) = output {
-            film_strip(gpu, &model, &motion, times, path)?;
+            film_strip(gpu, &model, &motion, bout, times, path)?;
             say!("{}", path.display());
             return Ok(());
         }
-        let mut film = BodyFilm::new(gpu, &model, &motion, self.camera(), self.size);
+        let mut film = BodyFilm::new(gpu, &model, &motion, bout, self.camera(), self.size);
         self.write(output, &mut film)
     }
 

@@ -1,5 +1,6 @@
 //! A task of a simulated body, to be watched: an episode at a time.
 
+use crate::env::humanoid::boxing::BoxingTask;
 use crate::env::humanoid::task::{CpuHumanoidEnv, HumanoidTask};
 use crate::physics::motion_library::MotionLibrary;
 use crate::rl::ase::LatentDraw;
@@ -16,6 +17,8 @@ pub struct BodyEpisodes {
     pub recordings: Option<Arc<MotionLibrary>>,
     /// The latents under which it moves, if it does.
     pub latents: Option<LatentDraw>,
+    /// The task, if its episodes are bouts.
+    pub bouts: Option<Arc<BoxingTask>>,
 }
 
 impl BodyEpisodes {
@@ -28,12 +31,18 @@ impl BodyEpisodes {
             task: Arc::new(move |seed| -> Arc<dyn HumanoidTask> { task(seed) }),
             recordings: recordings.cloned(),
             latents: None,
+            bouts: None,
         }
     }
 
     /// Lets bodies move under latents, if there are any.
     pub fn with_latents(self, latents: Option<LatentDraw>) -> BodyEpisodes {
         BodyEpisodes { latents, ..self }
+    }
+
+    /// Says that episodes are bouts, if they are, of this task.
+    pub fn with_bouts(self, bouts: Option<Arc<BoxingTask>>) -> BodyEpisodes {
+        BodyEpisodes { bouts, ..self }
     }
 
     /// So many environments at the start of the episodes that evaluations begin with.

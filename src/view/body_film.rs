@@ -1,6 +1,8 @@
 //! A film of a simulated body's motion, by a camera that follows it.
 
+use super::bout_bars;
 use super::camera::{Camera, FOLLOW};
+use super::recorded_bout::RecordedBout;
 use super::render_target::RenderTarget;
 use super::renderer::Renderer;
 use super::scene::Scene;
@@ -12,17 +14,14 @@ use anyhow::Result;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// How much further the camera is for each metre of the way from the middle to who is farthest.
-const WIDE: f32 = 1.4;
-
 /// A motion before a camera, a frame at a time.
 pub struct BodyFilm<'a> {
     model: &'a Arc<Model>,
     motion: &'a MotionClip,
+    /// What it was besides, if it was a bout.
+    bout: Option<&'a RecordedBout>,
     frame: usize,
     camera: Camera,
-    /// From the camera to a single body, m.
-    near: f32,
     renderer: Renderer,
     target: RenderTarget,
 }
@@ -33,14 +32,15 @@ impl<'a> BodyFilm<'a> {
         gpu: &Gpu,
         model: &'a Arc<Model>,
         motion: &'a MotionClip,
+        bout: Option<&'a RecordedBout>,
         camera: Camera,
         size: [u32; 2],
     ) -> BodyFilm<'a> {
         let mut film = BodyFilm {
             model,
             motion,
+            bout,
             frame: 0,
-            near: camera.distance,
             camera,
             renderer: Renderer::new(gpu),
             target: RenderTarget::new(&gpu.setup.device, size),
@@ -60,8 +60,8 @@ impl<'a> BodyFilm<'a> {
     fn follow(&mut self, by: f32) {
         let poses = shapes::poses(self.model, self.motion.q(self.frame));
         let (at, side) = shapes::company(self.model, &poses);
-        self.camera.follow([at.x, at.z], by);
-        self.camera.distance = self.near + WIDE * side;
+        let aspect = self.target.aspect();
+        self.camera.frame([at.x, at.z], side, aspect, by);
     }
 
     /// The frame, RGB.
@@ -72,8 +72,15 @@ impl<'a> BodyFilm<'a> {
         let poses = shapes::poses(self.model, self.motion.q(self.frame));
         let mut scene = Scene::default();
         shapes::draw(&mut scene, self.model, &poses, Vec3::ZERO, Look::Solid);
+        if let Some(bout) = self.bout {
+            bout.draw(&mut scene, self.frame);
+        }
         self.renderer.draw(&scene, None, &self.camera, &self.target);
-        self.target
-            .read(&self.renderer.device, &self.renderer.queue)
+        let (device, queue) = (&self.renderer.device, &self.renderer.queue);
+        let mut rgb = self.target.read(device, queue)?;
+        if let Some(bout) = self.bout {
+            bout_bars::draw(&mut rgb, self.target.size, bout.at(self.frame));
+        }
+        Ok(rgb)
     }
 }

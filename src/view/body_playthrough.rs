@@ -1,14 +1,18 @@
 //! A simulated body under a policy, step by step, for somebody to watch and to push.
 
 use super::latent_path::{LatentPath, SteeredDriver};
+use super::own_fighter::OwnFighter;
 use super::reference::Reference;
 use crate::container::Section;
 use crate::env::VecEnv;
+use crate::env::humanoid::boxing::bout::Bout;
+use crate::env::humanoid::boxing::command::FightCommand;
 use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::env::humanoid::task::CpuHumanoidEnv;
 use crate::env::humanoid::task::play::DrivenStep;
 use crate::gpu::Array;
 use crate::kernels::humanoid::end_episode::LIMIT;
+use crate::kernels::humanoid::fighters::FIGHTERS;
 use crate::kernels::termination;
 use crate::physics::collision::MAX_POINTS;
 use crate::physics::model::Model;
@@ -24,6 +28,8 @@ pub struct BodyContext {
     /// An environment of the episode `opened`; every moment puts its own state into it.
     env: CpuHumanoidEnv,
     opened: u32,
+    /// Who obeys commands, if it is a bout.
+    fighter: Option<OwnFighter>,
     /// What the body is to move like, if there are recordings.
     pub reference: Option<Reference>,
 }
@@ -34,8 +40,20 @@ impl BodyContext {
         BodyContext {
             env: episodes.open(0),
             opened: 0,
+            fighter: episodes
+                .bouts
+                .is_some()
+                .then(|| OwnFighter::new(episodes.open(0), None)),
             reference: episodes.recordings.as_ref().map(Reference::new),
             episodes,
+        }
+    }
+
+    /// Lets somebody else obey commands.
+    pub fn with_fighter(self, fighter: OwnFighter) -> BodyContext {
+        BodyContext {
+            fighter: Some(fighter),
+            ..self
         }
     }
 
@@ -98,12 +116,18 @@ pub struct BodyPlaythrough {
     pub reference: Option<usize>,
     /// Positions at which it should be, if the task says so.
     pub wanted: Option<Vec<f32>>,
+    /// How the bout stands, if it is one.
+    pub bout: Option<Bout>,
+    /// What somebody tells red to do in the next step; `None` where the policy fights for itself.
+    pub command: Option<FightCommand>,
     /// The latents that somebody wants; `None` where they change as in training.
     pub path: Option<LatentPath>,
     /// `[rows][observation]`
     observation: Vec<f32>,
     state: Section,
     driver: DriverState,
+    /// What the driver remembers of who obeys commands, if that has its own.
+    own_driver: DriverState,
 }
 
 impl BodyPlaythrough {
@@ -127,10 +151,13 @@ impl BodyPlaythrough {
             push: None,
             reference: None,
             wanted: None,
+            bout: context.episodes.bouts.as_ref().map(|_| Bout::default()),
+            command: None,
             path: None,
             observation: vec![0.0; rows * context.env.spec().observation.dim()],
             state: Section::default(),
             driver: DriverState::default(),
+            own_driver: DriverState::default(),
         };
         first.take(&mut context.env)?;
         first.follow(context);
@@ -154,44 +181,72 @@ impl BodyPlaythrough {
             env.batch.worlds[0].external_forces[push.body].linear += push.force;
         }
         let mut step = DrivenStep::new(env);
-        let mut driver = self.driver.clone();
-        let steered = self.path.as_ref().map(|path| SteeredDriver {
-            driver: &*policy.driver,
-            path,
-        });
-        let acting: &dyn BodyDriver = match &steered {
-            Some(steered) => steered,
-            None => &*policy.driver,
-        };
-        step.play(env, acting, &mut driver);
-        if step.ends.host()[0] != termination::RUNNING {
-            return self.next_episode(context);
-        }
         let mut next = BodyPlaythrough {
             steps: self.steps + 1,
-            reward: step.reward.host()[0],
-            touching: touching(env),
             push,
-            driver,
             ..self.clone()
         };
+        next.act(context, &mut step, &*policy.driver);
+        if step.ends.host()[0] != termination::RUNNING {
+            return self.begin_next(context, step.ends.host());
+        }
+        let BodyContext { env, episodes, .. } = context;
+        next.reward = step.reward.host()[0];
+        next.touching = touching(env);
+        if let (Some(bout), Some(task)) = (&self.bout, &episodes.bouts) {
+            next.bout = Some(bout.next(task, &env.batch.worlds[0], &env.task_states[0]));
+        }
         next.take(env)?;
         let style = env.spec().style;
         let moments = [&self.observation[..style], &next.observation[..style]];
         let discriminator = policy.discriminator.as_ref();
-        next.style =
-            discriminator.map(|discriminator| discriminator.reward(moments, &next.driver.latents));
+        let latents = match next.obeys_own_driver(context) {
+            true => &next.own_driver.latents,
+            false => &next.driver.latents,
+        };
+        next.style = discriminator.map(|discriminator| discriminator.reward(moments, latents));
         next.follow(context);
         Ok(next)
     }
 
-    /// The start of the next episode; a latent that somebody wants stays.
+    /// Plays a step of the context's environment: under a command, on a way of latents, or under the driver alone.
+    fn act(&mut self, context: &mut BodyContext, step: &mut DrivenStep, driver: &dyn BodyDriver) {
+        let BodyContext { env, fighter, .. } = context;
+        let state = &mut self.driver;
+        match (&self.command, fighter, &self.path) {
+            (Some(command), Some(fighter), _) => {
+                let world = &env.batch.worlds[0].state;
+                let (q, v) = (world.q.clone(), world.v.clone());
+                let states = [state, &mut self.own_driver];
+                step.play_by(env, |seen| {
+                    fighter.act(command, [&q, &v], seen, driver, states)
+                });
+            }
+            (_, _, Some(path)) => step.play(env, &SteeredDriver { driver, path }, state),
+            (_, _, None) => step.play(env, driver, state),
+        }
+    }
+
+    /// Whether red is moved by a driver of its own.
+    fn obeys_own_driver(&self, context: &BodyContext) -> bool {
+        let fighter = context.fighter.as_ref();
+        self.command.is_some() && fighter.is_some_and(OwnFighter::has_driver)
+    }
+
+    /// The start of the next episode; what somebody wants stays.
     ///
     /// # Errors
     /// None: the environment is on the host.
     pub fn next_episode(&self, context: &mut BodyContext) -> Result<BodyPlaythrough> {
+        self.begin_next(context, &[termination::RUNNING; FIGHTERS])
+    }
+
+    /// The start of the next episode, after one that ended like this for each agent.
+    fn begin_next(&self, context: &mut BodyContext, ends: &[u32]) -> Result<BodyPlaythrough> {
         let path = self.path.as_ref();
         Ok(BodyPlaythrough {
+            bout: self.bout.as_ref().map(|bout| bout.over(ends)),
+            command: self.command,
             path: path.map(|path| LatentPath::held(path.end().to_vec())),
             ..BodyPlaythrough::new(context, self.episode + 1)?
         })

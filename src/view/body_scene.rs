@@ -1,6 +1,7 @@
 //! Scenes of a simulated body: the forces on it, and beside it what it is to move like.
 
 use super::body_playthrough::{BodyContext, BodyPlaythrough, BodyPush, TouchForce};
+use super::bout_scene::{flashes, ring};
 use super::camera::Camera;
 use super::scene::{Colour, Scene};
 use super::shapes::{self, Look, seen};
@@ -39,6 +40,10 @@ pub fn body_scene(
         for TouchForce { at, force } in &moment.touching {
             arrow(&mut scene, *at, *force, TOUCH);
         }
+    }
+    if let (Some(bout), Some(task)) = (&moment.bout, &context.episodes().bouts) {
+        ring(&mut scene, task.boxing().arena);
+        flashes(&mut scene, &bout.strikes);
     }
     if let Some(push) = push.or(moment.push) {
         let centre = poses[push.body].at(model.bodies[push.body].com);

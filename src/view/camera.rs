@@ -17,6 +17,10 @@ pub const DISTANCE: [f32; 2] = [0.5, 2000.0];
 /// Fraction of the way to a character that a camera in a film or a window covers in a frame.
 pub const FOLLOW: f32 = 0.2;
 
+/// How much further the camera is for each metre of the way from the middle of a company to who is farthest, in a
+/// picture as wide as it is high: so much that all are in it, wherever they stand to each other.
+const WIDE: f32 = 2.5;
+
 /// A camera on a sphere around the point it looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -28,6 +32,8 @@ pub struct Camera {
     pub pitch: f32,
     /// m
     pub distance: f32,
+    /// What part of the distance is there for a company's sake, m: see [`Camera::frame`].
+    pub wider: f32,
 }
 
 impl Default for Camera {
@@ -37,6 +43,7 @@ impl Default for Camera {
             yaw: 0.7,
             pitch: 0.28,
             distance: 5.5,
+            wider: 0.0,
         }
     }
 }
@@ -64,12 +71,22 @@ impl Camera {
     /// Multiplies the distance by a factor, within limits.
     pub fn zoom(&mut self, factor: f32) {
         self.distance = (self.distance * factor).clamp(DISTANCE[0], DISTANCE[1]);
+        self.wider *= factor;
     }
 
     /// Goes a fraction of the way to look at a point on the ground.
     pub fn follow(&mut self, at: [f32; 2], fraction: f32) {
         let there = Vec3::new(at[0], self.focus.y, at[1]);
         self.focus += fraction * (there - self.focus);
+    }
+
+    /// Goes a fraction of the way to look at a company around a point on the ground, who are `side` metres from it at
+    /// most, in a picture `aspect` times as wide as high.
+    pub fn frame(&mut self, at: [f32; 2], side: f32, aspect: f32, fraction: f32) {
+        self.follow(at, fraction);
+        let more = fraction * (WIDE / aspect.min(1.8) * side - self.wider);
+        self.wider += more;
+        self.distance = (self.distance + more).clamp(DISTANCE[0], DISTANCE[1]);
     }
 
     /// Moves the focus over the ground: to the right of the picture and away from the eye, m.

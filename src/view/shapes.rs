@@ -9,6 +9,17 @@ use crate::physics::pose::Pose;
 use crate::physics::spatial::Spatial;
 use glam::{Quat, Vec3};
 
+/// Trunk, left limbs and right limbs of a bout's fighters: red, then blue.
+const CORNERS: [(&str, [Colour; 3]); 2] = [
+    (
+        "red/",
+        [[0.62, 0.06, 0.05], [0.86, 0.30, 0.22], [0.42, 0.03, 0.04]],
+    ),
+    (
+        "blue/",
+        [[0.05, 0.13, 0.62], [0.20, 0.42, 0.90], [0.03, 0.06, 0.36]],
+    ),
+];
 const THING: Colour = [0.42, 0.34, 0.30];
 /// A ghost's colours are mixed with this one, by this fraction.
 const GHOST: (Colour, f32) = ([0.80, 0.84, 0.88], 0.75);
@@ -67,16 +78,19 @@ pub fn draw(scene: &mut Scene, model: &Model, poses: &[Pose], aside: Vec3, look:
     }
 }
 
-/// The colour of a shape: left limbs are blue, right ones orange, and what has no limbs is brown.
+/// The colour of a shape: left limbs are blue, right ones orange, and what has no limbs is brown. Fighters have those
+/// of their corners, paler at the left.
 pub(super) fn colour(model: &Model, geom: &Geom, look: Look) -> Colour {
     let body = geom.body.map(|body| &model.bodies[body]);
     let name = body.map_or("", |body| &body.name);
     let alone = body.is_some_and(|body| model.trees[body.tree].bodies.len() == 1);
+    let corner = CORNERS.iter().find(|(corner, _)| name.starts_with(corner));
+    let [trunk, left, right] = corner.map_or([TRUNK, LEFT, RIGHT], |(_, colours)| *colours);
     let own = match name {
-        _ if name.contains("left") => LEFT,
-        _ if name.contains("right") => RIGHT,
+        _ if name.contains("left") => left,
+        _ if name.contains("right") => right,
         _ if alone => THING,
-        _ => TRUNK,
+        _ => trunk,
     };
     let (pale, fraction) = GHOST;
     match look {

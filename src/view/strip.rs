@@ -1,12 +1,15 @@
 //! Film strips of a motion: as it was recorded, and as the simulated body does it when its drives are
 //! given the recorded angles.
 
+use super::bout_bars;
 use super::camera::Camera;
 use super::image_files;
+use super::recorded_bout::RecordedBout;
 use super::render_target::RenderTarget;
 use super::renderer::Renderer;
 use super::scene::Scene;
 use super::shapes::{self, Look};
+use crate::env::humanoid::boxing::bout::Bout;
 use crate::gpu::Gpu;
 use crate::physics::model::Model;
 use crate::physics::motion_clip::{MotionClip, pd_targets};
@@ -54,7 +57,8 @@ pub fn strips(
     Ok([replayed, driven])
 }
 
-/// Writes a film strip of the motion, replayed from a time on for so many seconds, or to its end.
+/// Writes a film strip of the motion, replayed from a time on for so many seconds, or to its end; `bout` is what it was
+/// besides, if it was one.
 ///
 /// # Errors
 /// The file cannot be written, or the GPU was lost.
@@ -62,13 +66,22 @@ pub fn film_strip(
     gpu: &Gpu,
     model: &Arc<Model>,
     motion: &MotionClip,
+    bout: Option<&RecordedBout>,
     [start, seconds]: [f32; 2],
     path: &Path,
 ) -> Result<()> {
     let mut strip = Strip::new(gpu, model, motion.q(0), SIZE);
     let end = motion.seconds();
     let start = start.min(end);
-    let shots = strip.replayed(motion, times([start, (start + seconds).min(end)]));
+    let times: Vec<f32> = times([start, (start + seconds).min(end)]).collect();
+    let mut shots = strip.replayed(motion, times.iter().copied());
+    if let Some(bout) = bout {
+        for (shot, time) in shots.iter_mut().zip(times) {
+            let frame = (time * motion.rate) as usize;
+            bout.draw(&mut shot.scene, frame);
+            shot.bout = Some(bout.at(frame).clone());
+        }
+    }
     strip.write(path, &shots)
 }
 
@@ -77,6 +90,8 @@ pub(super) struct Shot {
     scene: Scene,
     focus: Vec3,
     side: f32,
+    /// How it stands, if it is of a bout.
+    bout: Option<Bout>,
 }
 
 /// What draws the pictures of a strip.
@@ -118,7 +133,12 @@ impl<'a> Strip<'a> {
             let mut scene = Scene::default();
             shapes::draw(&mut scene, self.model, &recorded, Vec3::ZERO, Look::Solid);
             let (focus, side) = shapes::company(self.model, &recorded);
-            Shot { scene, focus, side }
+            Shot {
+                scene,
+                focus,
+                side,
+                bout: None,
+            }
         });
         shots.collect()
     }
@@ -141,6 +161,7 @@ impl<'a> Strip<'a> {
                 scene,
                 focus: one + between / 2.0,
                 side: between.length() / 2.0,
+                bout: None,
             }
         });
         shots.collect()
@@ -159,8 +180,12 @@ impl<'a> Strip<'a> {
         self.camera.distance = NEAR + WIDE * shot.side;
         self.renderer
             .draw(&shot.scene, None, &self.camera, &self.target);
-        self.target
-            .read(&self.renderer.device, &self.renderer.queue)
+        let (device, queue) = (&self.renderer.device, &self.renderer.queue);
+        let mut rgb = self.target.read(device, queue)?;
+        if let Some(bout) = &shot.bout {
+            bout_bars::draw(&mut rgb, self.target.size, bout);
+        }
+        Ok(rgb)
     }
 
     /// One picture beside the other.

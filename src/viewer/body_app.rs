@@ -1,5 +1,6 @@
 //! The contents of the window of a simulated body.
 
+use super::bout_panel::BoutPanel;
 use super::policies::{Policies, PolicyEntry};
 use super::screen::{PointerAction, Screen};
 use super::skills_panel::{LatentWish, SkillsPanel};
@@ -35,6 +36,8 @@ pub struct BodyViewer {
     extras: BodyExtras,
     /// The panel of a policy of skills.
     skills: Option<SkillsPanel>,
+    /// The panel of a bout.
+    bout: Option<BoutPanel>,
     /// The body that the pointer has hold of, and where the pointer is.
     grip: Option<(usize, Ray)>,
     /// What went wrong last.
@@ -55,17 +58,20 @@ impl BodyViewer {
     ) -> Result<Self> {
         let policies = Policies::new(policies);
         let policy = policies.load().context("the run has no checkpoints")??;
+        // Between fighters, arrows and a third body would be in the way.
+        let alone = context.episodes().bouts.is_none();
         let mut viewer = BodyViewer {
             timeline: Timeline::new(BodyPlaythrough::new(&mut context, 0)?),
             skills: SkillsPanel::new(&context, &policy),
+            bout: (!alone).then(BoutPanel::open),
             policy,
             policies,
             context,
             transport: Transport::default(),
             camera: Camera::default(),
             extras: BodyExtras {
-                forces: true,
-                reference: true,
+                forces: alone,
+                reference: alone,
             },
             grip: None,
             problem: None,
@@ -77,11 +83,7 @@ impl BodyViewer {
 
     /// Draws the window and takes its input.
     pub fn show(&mut self, ui: &mut Ui) {
-        if !transport::keys_are_taken(ui)
-            && let Some(seek) = self.transport.keys(ui)
-        {
-            self.seek(seek);
-        }
+        self.keys(ui);
         for _ in 0..self.transport.due(ui) {
             self.forward();
         }
@@ -95,6 +97,7 @@ impl BodyViewer {
             .default_size(260.0)
             .show(ui, |ui| self.state(ui));
         self.skills(ui);
+        self.bout(ui);
         egui::CentralPanel::default()
             .frame(egui::Frame::NONE)
             .show(ui, |ui| self.world(ui));
@@ -113,8 +116,21 @@ impl BodyViewer {
         &self.timeline
     }
 
+    fn keys(&mut self, ui: &Ui) {
+        if transport::keys_are_taken(ui) {
+            return;
+        }
+        if let Some(bout) = &mut self.bout {
+            bout.keys(ui);
+        }
+        if let Some(seek) = self.transport.keys(ui) {
+            self.seek(seek);
+        }
+    }
+
     /// A step on.
     fn forward(&mut self) {
+        self.command();
         let push = self.push();
         let next = |now: &BodyPlaythrough| now.next(&mut self.context, &self.policy, push);
         let advanced = self.timeline.forward(next);
@@ -122,6 +138,19 @@ impl BodyViewer {
             self.transport.playing = false;
         }
         self.look_at_it(FOLLOW);
+    }
+
+    /// Tells red what is pressed. Who presses something in the middle of what has been played goes on from there.
+    fn command(&mut self) {
+        let Some(bout) = &self.bout else {
+            return;
+        };
+        let now = self.timeline.now();
+        let is_last = self.timeline.at() + 1 == self.timeline.len();
+        let command = bout.command(&self.camera, &now.q);
+        if command != now.command && (is_last || bout.is_pressed()) {
+            self.timeline.change().command = command;
+        }
     }
 
     /// Stops at another frame.
@@ -147,8 +176,9 @@ impl BodyViewer {
         if self.transport.follow {
             let model = self.context.model();
             let poses = shapes::poses(model, &self.timeline.now().q);
-            let (at, _) = shapes::company(model, &poses);
-            self.camera.follow([at.x, at.z], fraction);
+            let (at, side) = shapes::company(model, &poses);
+            let aspect = self.screen.aspect();
+            self.camera.frame([at.x, at.z], side, aspect, fraction);
         }
     }
 
@@ -162,6 +192,14 @@ impl BodyViewer {
             Some(LatentWish::Hold(latent, steps)) => self.timeline.change().hold(latent, steps),
             Some(LatentWish::Change) => self.timeline.change().path = None,
             None => {}
+        }
+    }
+
+    fn bout(&mut self, ui: &mut Ui) {
+        let now = self.timeline.now();
+        if let (Some(panel), Some(bout)) = (&mut self.bout, &now.bout) {
+            let side = egui::Panel::left("bout").default_size(190.0);
+            side.show(ui, |ui| panel.show(ui, bout, now.steps as f32 * DT));
         }
     }
 
@@ -185,7 +223,7 @@ impl BodyViewer {
             }
         }
         ui.small("Drag the body to push it; drag elsewhere to turn the camera.");
-        if self.context.model().trees.len() > 1 {
+        if self.context.model().trees.len() > 1 && self.bout.is_none() {
             ui.small("Click the ground to put the target there.");
         }
         ui.separator();
@@ -205,7 +243,8 @@ impl BodyViewer {
         if let [own, target] = &self.context.model().trees[..] {
             let centres = self.centres();
             let far = centres[target.bodies.start].distance(centres[own.bodies.start]);
-            ui.label(format!("target {far:.1} m away"));
+            let what = self.bout.as_ref().map_or("target", |_| "opponent");
+            ui.label(format!("{what} {far:.1} m away"));
         }
         if let (Some(discriminator), Some(style)) = (&self.policy.discriminator, now.style) {
             let bar = egui::ProgressBar::new(discriminator.share(style).clamp(0.0, 1.0));

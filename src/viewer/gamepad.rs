@@ -1,5 +1,6 @@
-//! The stick of a gamepad.
+//! The sticks of a gamepad.
 
+use super::pressed::Pressed;
 use gilrs::{Axis, Button, Gilrs};
 
 /// A stick nearer to its middle than this rests there.
@@ -36,6 +37,27 @@ impl Gamepad {
                 run: run.iter().any(|&button| pad.is_pressed(button)),
             };
             (push.right.hypot(push.away) > REST).then_some(push)
+        })
+    }
+
+    /// What is pressed by who fights on the first gamepad that is touched: both sticks, and the right shoulder button or
+    /// trigger.
+    pub fn pressed(&mut self) -> Option<Pressed> {
+        while self.0.next_event().is_some() {}
+        self.0.gamepads().find_map(|(_, pad)| {
+            let stick = |axes: [Axis; 2]| {
+                let at = axes.map(|axis| pad.value(axis));
+                let pushed = at[0].hypot(at[1]) > REST;
+                if pushed { at } else { [0.0; 2] }
+            };
+            let punch = [Button::RightTrigger, Button::RightTrigger2];
+            let pressed = Pressed {
+                walk: stick([Axis::LeftStickX, Axis::LeftStickY]),
+                face: stick([Axis::RightStickX, Axis::RightStickY]),
+                turn: 0.0,
+                punch: punch.iter().any(|&button| pad.is_pressed(button)),
+            };
+            (pressed != Pressed::default()).then_some(pressed)
         })
     }
 }

@@ -3,11 +3,13 @@
 
 pub mod app;
 pub mod body_app;
+pub mod bout_panel;
 #[cfg(feature = "gamepad")]
 pub mod gamepad;
 pub mod maps;
 pub mod pace;
 pub mod policies;
+pub mod pressed;
 pub mod runners_up;
 pub mod screen;
 pub mod skills_panel;

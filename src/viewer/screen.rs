@@ -110,6 +110,11 @@ impl Screen {
         None
     }
 
+    /// Width of the picture by its height.
+    pub fn aspect(&self) -> f32 {
+        self.target.aspect()
+    }
+
     fn fit(&mut self, size: [u32; 2]) {
         if size == self.target.size {
             return;

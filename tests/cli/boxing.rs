@@ -127,6 +127,24 @@ fn checkpoints_meet_in_tournaments() {
     place.done(
         "train stand --device cpu --envs 4 --set ppo.rollout_length=4 --steps 16 --out stand",
     );
+    // Who fights, and moved by whom.
+    place.done(&format!("train box {SMALL} {STYLE} --steps 32 --out alone"));
+    for (words, part) in [
+        (
+            "play stand --fighter run",
+            "stand is a run of `stand`, in which nobody fights",
+        ),
+        (
+            "play run --fighter stand",
+            "stand is a run of `stand`, which has learned to go to nobody",
+        ),
+        (
+            "play run --fighter alone",
+            "alone moves by another low level than run",
+        ),
+    ] {
+        place.refused(words, 2, &[part, "--fighter"]);
+    }
     for (words, part) in [
         ("tournament run", "two checkpoints at least"),
         (

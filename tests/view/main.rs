@@ -1,6 +1,7 @@
 //! Pictures and windows, on lavapipe.
 
 mod body;
+mod bout;
 mod compare;
 mod crowd;
 mod pictures;

@@ -307,7 +307,8 @@ impl<T: MotionTask> Task for MotionTraining<T> {
     fn body(&self) -> Option<BodyEpisodes> {
         let (task, library) = (self.task.clone(), self.library.clone());
         let judged = move |seed| task.judged(&library, seed);
-        let episodes = BodyEpisodes::new(judged, Some(&self.library));
+        let bouts = T::bouts(self.task.judged(&self.library, EPISODES_SEED));
+        let episodes = BodyEpisodes::new(judged, Some(&self.library)).with_bouts(bouts);
         Some(episodes.with_latents(self.task.latents(&self.library)))
     }
 }

@@ -7,7 +7,9 @@
 //! done more damage; who has failed has won nothing. Damage is the impulse of a fighter's hands on the other's torso and
 //! head, friction included: of no other part, and never of the ground.
 
+pub mod bout;
 mod choices;
+pub mod command;
 pub mod corners;
 pub mod evaluate;
 
@@ -73,6 +75,11 @@ impl BoxingTask {
             params: params(boxing, &model),
             model,
         }
+    }
+
+    /// The choices.
+    pub fn boxing(&self) -> &Boxing {
+        &self.boxing
     }
 }
 

@@ -13,7 +13,7 @@ use super::task::{
     EpisodeRules, GpuHumanoidTask, HumanoidTask, StepContext, StepOutcome, TaskBuffers,
 };
 use crate::gpu::{Buffer, Gpu};
-use crate::kernels::humanoid::punch_state::{HIT_STEPS, MOVING, PUNCH_STATE};
+use crate::kernels::humanoid::punch_state::{FACING, HIT_STEPS, MOVING, PUNCH_STATE};
 use crate::kernels::humanoid::{place_target, punch_observe, punch_reward};
 use crate::kernels::physics::smooth_dynamics::DynamicsLayout;
 use crate::kernels::termination::SUCCESS;
@@ -235,6 +235,11 @@ impl HumanoidTask for PunchTask {
 
     fn move_target(&self, at: [f32; 2], world: &mut SimulatorState, state: &mut [f32]) {
         place_target::stand_at(at, &mut world.q, &mut world.v, state, &self.params.place);
+    }
+
+    fn want(&self, moving: Vec2, facing: Vec2, state: &mut [f32]) {
+        state[MOVING..MOVING + 2].copy_from_slice(&moving.to_array());
+        state[FACING..FACING + 2].copy_from_slice(&facing.to_array());
     }
 
     fn observe(

@@ -23,6 +23,7 @@ use crate::kernels::termination;
 use crate::physics::simulator::Simulator;
 use crate::physics::spatial::Spatial;
 use anyhow::Result;
+use glam::Vec2;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -117,6 +118,12 @@ impl CpuHumanoidEnv {
         self.observe_all();
     }
 
+    /// Says where somebody wants the body of an environment to move and to face: see [`HumanoidTask::want`].
+    pub fn want(&mut self, env: usize, moving: Vec2, facing: Vec2) {
+        let state = &mut self.task_states[env];
+        self.common.task.want(moving, facing, state);
+    }
+
     /// Contacts that a saved state has room for: a GPU's, or as many as a world has.
     fn room(&self) -> usize {
         let worlds = self.batch.worlds.iter();
@@ -125,7 +132,8 @@ impl CpuHumanoidEnv {
             .max(self.common.batch.options.max_contacts)
     }
 
-    fn observe_all(&mut self) {
+    /// Observes the worlds anew, after somebody has changed them.
+    pub fn observe_all(&mut self) {
         let common = &self.common;
         let rows = self
             .observation

@@ -6,6 +6,7 @@ use crate::gpu::{Buffer, Gpu};
 use crate::kernels::termination;
 use crate::physics::model::Model;
 use crate::physics::simulator::{Simulator, SimulatorState};
+use glam::Vec2;
 use std::sync::Arc;
 
 /// What the random numbers of a step depend on, besides the environment's number.
@@ -99,6 +100,9 @@ pub trait HumanoidTask: Send + Sync {
 
     /// Puts the target elsewhere on the ground, m, if the task has one.
     fn move_target(&self, _at: [f32; 2], _world: &mut SimulatorState, _state: &mut [f32]) {}
+
+    /// Says where somebody wants the body to move and to face, unit vectors on the ground, if the task has such wishes.
+    fn want(&self, _moving: Vec2, _facing: Vec2, _state: &mut [f32]) {}
 
     /// Observes what the task adds for an agent.
     fn observe(

@@ -155,13 +155,19 @@ impl Episodes {
     }
 }
 
-/// The motion of one episode of the first environment, up to its end.
-pub fn record(envs: &mut CpuHumanoidEnv, driver: &dyn BodyDriver, name: &str) -> MotionClip {
+/// The motion of one episode of the first environment, up to its end; `after` is shown every step but the last.
+pub fn record(
+    envs: &mut CpuHumanoidEnv,
+    driver: &dyn BodyDriver,
+    name: &str,
+    mut after: impl FnMut(&CpuHumanoidEnv),
+) -> MotionClip {
     let mut q = envs.batch.worlds[0].state.q.clone();
     play(envs, driver, DriverState::default(), |envs, ends, _| {
         let running = ends[0] == termination::RUNNING;
         if running {
             q.extend(&envs.batch.worlds[0].state.q);
+            after(envs);
         }
         running
     });

@@ -1,0 +1,43 @@
+//! A bout that was played to its end, to be drawn frame by frame.
+
+use super::bout_scene::{flashes, ring};
+use super::scene::Scene;
+use crate::env::humanoid::boxing::BoxingTask;
+use crate::env::humanoid::boxing::bout::Bout;
+use crate::env::humanoid::task::CpuHumanoidEnv;
+use std::sync::Arc;
+
+/// What happened in a bout besides the fighters' motion.
+pub struct RecordedBout {
+    task: Arc<BoxingTask>,
+    /// The start, and every step.
+    moments: Vec<Bout>,
+}
+
+impl RecordedBout {
+    /// A bout that begins.
+    pub fn new(task: Arc<BoxingTask>) -> RecordedBout {
+        RecordedBout {
+            task,
+            moments: vec![Bout::default()],
+        }
+    }
+
+    /// Takes in a step of the first environment.
+    pub fn push(&mut self, envs: &CpuHumanoidEnv) {
+        let last = self.moments.last().expect("the start");
+        let next = last.next(&self.task, &envs.batch.worlds[0], &envs.task_states[0]);
+        self.moments.push(next);
+    }
+
+    /// How it stood in a frame.
+    pub fn at(&self, frame: usize) -> &Bout {
+        &self.moments[frame.min(self.moments.len() - 1)]
+    }
+
+    /// Adds the ring, and a frame's flashes.
+    pub fn draw(&self, scene: &mut Scene, frame: usize) {
+        ring(scene, self.task.boxing().arena);
+        flashes(scene, &self.at(frame).strikes);
+    }
+}
