@@ -5,14 +5,13 @@ use super::own_fighter::OwnFighter;
 use super::reference::Reference;
 use crate::container::Section;
 use crate::env::VecEnv;
-use crate::env::humanoid::boxing::bout::Bout;
+use crate::env::humanoid::boxing::bout::{Bout, winners};
 use crate::env::humanoid::boxing::command::FightCommand;
 use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::env::humanoid::task::CpuHumanoidEnv;
 use crate::env::humanoid::task::play::DrivenStep;
 use crate::gpu::Array;
 use crate::kernels::humanoid::end_episode::LIMIT;
-use crate::kernels::humanoid::fighters::FIGHTERS;
 use crate::kernels::termination;
 use crate::physics::collision::MAX_POINTS;
 use crate::physics::model::Model;
@@ -188,7 +187,7 @@ impl BodyPlaythrough {
         };
         next.act(context, &mut step, &*policy.driver);
         if step.ends.host()[0] != termination::RUNNING {
-            return self.begin_next(context, step.ends.host());
+            return self.begin_next(context);
         }
         let BodyContext { env, episodes, .. } = context;
         next.reward = step.reward.host()[0];
@@ -238,14 +237,18 @@ impl BodyPlaythrough {
     /// # Errors
     /// None: the environment is on the host.
     pub fn next_episode(&self, context: &mut BodyContext) -> Result<BodyPlaythrough> {
-        self.begin_next(context, &[termination::RUNNING; FIGHTERS])
+        let env = context.env(self.episode);
+        env.load(&mut self.state.clone())?;
+        self.begin_next(context)
     }
 
-    /// The start of the next episode, after one that ended like this for each agent.
-    fn begin_next(&self, context: &mut BodyContext, ends: &[u32]) -> Result<BodyPlaythrough> {
+    /// The start of the next episode, after the step of the context's environment that may have ended one.
+    fn begin_next(&self, context: &mut BodyContext) -> Result<BodyPlaythrough> {
         let path = self.path.as_ref();
+        let over = |bout: &Bout| Ok::<_, anyhow::Error>(bout.over(winners(&context.env)?));
+        let bout = self.bout.as_ref().map(over).transpose()?;
         Ok(BodyPlaythrough {
-            bout: self.bout.as_ref().map(|bout| bout.over(ends)),
+            bout,
             command: self.command,
             path: path.map(|path| LatentPath::held(path.end().to_vec())),
             ..BodyPlaythrough::new(context, self.episode + 1)?

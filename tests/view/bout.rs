@@ -9,7 +9,6 @@ use footwork::env::humanoid::boxing::bout::{Bout, REMEMBERED, Strike};
 use footwork::env::humanoid::boxing::command::{FightCommand, ImaginedWorld};
 use footwork::env::humanoid::task::CpuHumanoidEnv;
 use footwork::env::humanoid::task::play::DrivenStep;
-use footwork::kernels::termination::{FAILED, RUNNING, SUCCESS};
 use footwork::physics::scenes;
 use footwork::train::body_episodes::BodyEpisodes;
 use footwork::train::body_policy::BodyPolicy;
@@ -195,7 +194,7 @@ fn a_hand_on_the_other_is_a_strike_that_is_remembered_for_a_while() {
 }
 
 #[test]
-fn who_is_ahead_leads_and_who_remains_wins() {
+fn who_is_ahead_leads_and_bouts_won_are_counted() {
     let bout = |damage, knockdowns| Bout {
         damage,
         knockdowns,
@@ -211,13 +210,12 @@ fn who_is_ahead_leads_and_who_remains_wins() {
         assert_eq!(bout(damage, knockdowns).leader(), leader);
     }
     let mut now = bout([3.0, 5.0], [1, 0]);
-    for (ends, won) in [
-        ([SUCCESS, FAILED], [1, 0]),
-        ([FAILED, FAILED], [1, 0]),
-        ([FAILED, SUCCESS], [1, 1]),
-        ([RUNNING, RUNNING], [1, 1]),
+    for (winners, won) in [
+        ([true, false], [1, 0]),
+        ([false, false], [1, 0]),
+        ([false, true], [1, 1]),
     ] {
-        now = now.over(&ends);
+        now = now.over(winners);
         assert_eq!(now.won, won);
         assert_eq!((now.damage, now.knockdowns), ([0.0; 2], [0; 2]));
     }

@@ -56,14 +56,6 @@ impl FrozenDiscriminator {
         }
     }
 
-    /// What it has learned by.
-    pub fn loss(&self) -> DiscriminatorLoss {
-        match self.params.hinge {
-            1 => DiscriminatorLoss::Hinge,
-            _ => DiscriminatorLoss::Bce,
-        }
-    }
-
     /// The style reward of moving from a moment to the next under a latent, which counts where it is shown.
     pub fn reward(&self, moments: [&[f32]; 2], latent: &[f32]) -> f32 {
         self.reward_and_cosine(moments, latent).0

@@ -1,14 +1,15 @@
 //! How a bout stands, step by step, for whoever watches it.
 
 use super::BoxingTask;
+use crate::env::VecEnv;
 use crate::env::humanoid::batch::SimulatedWorld;
-use crate::env::humanoid::task::HumanoidTask;
+use crate::env::humanoid::task::{CpuHumanoidEnv, HumanoidTask};
 use crate::kernels::humanoid::boxing_state::{DAMAGE, KNOCKDOWNS};
 use crate::kernels::humanoid::fighters::FIGHTERS;
-use crate::kernels::termination::FAILED;
 use crate::physics::kinematics::kinematics;
 use crate::physics::pose::Pose;
 use crate::physics::spatial::Spatial;
+use anyhow::Result;
 use glam::Vec3;
 
 /// Steps for which a strike is remembered: a fifth of a second.
@@ -34,11 +35,11 @@ pub struct Strike {
 pub struct Bout {
     /// Impulse of each one's hands on the other's torso and head, N s.
     pub damage: [f32; FIGHTERS],
-    /// Falls of each one's opponent.
+    /// Knock-downs by each.
     pub knockdowns: [u32; FIGHTERS],
     /// Strikes of the last steps.
     pub strikes: Vec<Strike>,
-    /// Bouts before this one that each has won by a fall of the other, or because the other left the arena.
+    /// Bouts before this one that each has won.
     pub won: [u32; FIGHTERS],
 }
 
@@ -58,15 +59,10 @@ impl Bout {
         }
     }
 
-    /// The beginning of the next bout, after one that ended like this for each.
-    pub fn over(&self, ends: &[u32]) -> Bout {
-        let mut won = self.won;
-        for (fighter, won) in won.iter_mut().enumerate() {
-            let alone = ends[1 - fighter] == FAILED && ends[fighter] != FAILED;
-            *won += u32::from(alone);
-        }
+    /// The beginning of the next bout, after one that these have won.
+    pub fn over(&self, winners: [bool; FIGHTERS]) -> Bout {
         Bout {
-            won,
+            won: [0, 1].map(|fighter| self.won[fighter] + u32::from(winners[fighter])),
             ..Bout::default()
         }
     }
@@ -81,6 +77,17 @@ impl Bout {
             _ => None,
         }
     }
+}
+
+/// Who has won the bouts that have ended in an environment, the only one, since its statistics were last taken.
+///
+/// # Errors
+/// None: the environment is on the host.
+pub fn winners(env: &CpuHumanoidEnv) -> Result<[bool; FIGHTERS]> {
+    let (names, stats) = (env.stat_names(), env.row_stats()?);
+    let successes = names.iter().position(|name| *name == "successes");
+    let of = |fighter: usize| successes.map(|stat| stats[fighter * names.len() + stat]);
+    Ok([0, 1].map(|fighter| of(fighter).is_some_and(|won| won > 0.0)))
 }
 
 /// The strikes of the last step.
