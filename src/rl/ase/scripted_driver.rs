@@ -42,6 +42,19 @@ pub struct Stride {
 }
 
 impl Script {
+    /// The latents of bodies that observe rows of so many numbers; `None` if they do not hang on that alone.
+    pub fn latents(&self, observation: &[f32], width: usize) -> Option<Vec<f32>> {
+        let rows = observation.chunks_exact(width);
+        match self {
+            Script::Keep(latent) => Some(latent.repeat(rows.len())),
+            Script::Random(..) => None,
+            Script::Approach { target, strides } => {
+                let latents = rows.map(|row| nearest(strides, [row[*target], row[target + 1]]));
+                Some(latents.collect::<Vec<_>>().concat())
+            }
+        }
+    }
+
     /// Keeps the latent that an action of zeros stands for, of so many numbers.
     pub fn unsteered(latent: usize) -> Script {
         let mut kept = vec![0.0; latent];
@@ -71,18 +84,13 @@ impl ScriptedDriver {
 
 impl BodyDriver for ScriptedDriver {
     fn act(&self, observation: &[f32], state: &mut DriverState) -> Vec<f32> {
-        let rows = observation.chunks_exact(self.observation);
-        match &self.script {
-            Script::Keep(latent) => state.latents = latent.repeat(rows.len()),
-            Script::Random(draw, seed) => draw.advance(rows.len(), *seed, state),
-            Script::Approach { target, strides } if state.steps.is_multiple_of(CHOICE_STEPS) => {
-                let latents =
-                    rows.flat_map(|row| nearest(strides, [row[*target], row[target + 1]]));
-                state.latents = latents.copied().collect();
+        if let Script::Random(draw, seed) = &self.script {
+            draw.advance(observation.len() / self.observation, *seed, state);
+        } else {
+            if state.steps.is_multiple_of(CHOICE_STEPS) {
+                let latents = self.script.latents(observation, self.observation);
+                state.latents = latents.unwrap_or_default();
             }
-            Script::Approach { .. } => {}
-        }
-        if !matches!(self.script, Script::Random(..)) {
             state.steps += 1;
         }
         self.low_level.act(observation, &state.latents)

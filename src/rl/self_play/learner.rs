@@ -15,8 +15,8 @@ pub struct SelfPlayLearner {
     inner: Box<dyn Algorithm>,
     config: SelfPlay,
     pool: Pool,
-    /// Who is there from the beginning.
-    first: Vec<Opponent>,
+    /// Who never leaves the pool.
+    scripted: Vec<Opponent>,
     /// Steps of an update.
     rollout_length: usize,
     /// Numbers of an observation and of an action.
@@ -26,7 +26,7 @@ pub struct SelfPlayLearner {
 }
 
 impl SelfPlayLearner {
-    /// A learner whose opponents are, to begin with, the `first` and the learner's policy as it is now. Of the environments' statistics, `fractions` of the steps are told by other names.
+    /// A learner whose opponents are the `scripted` ones and, to begin with, its policy as it is now. Of the environments' statistics, `fractions` of the steps are told by other names.
     ///
     /// # Errors
     /// The environments are not of self-play, or the device was lost.
@@ -34,7 +34,7 @@ impl SelfPlayLearner {
         inner: Box<dyn Algorithm>,
         config: &SelfPlay,
         envs: &EnvBatch,
-        first: Vec<Opponent>,
+        scripted: Vec<Opponent>,
         rollout_length: usize,
         fractions: &'static [(&'static str, &'static str)],
     ) -> Result<Self> {
@@ -43,29 +43,20 @@ impl SelfPlayLearner {
             bail!("a learner by self-play takes environments of self-play");
         }
         let spec = envs.spec();
-        let mut learner = SelfPlayLearner {
-            pool: Pool::new(config, Vec::new()),
+        Ok(SelfPlayLearner {
+            pool: Pool::new(config, scripted.clone(), inner.policy()?),
             config: *config,
             inner,
-            first,
+            scripted,
             rollout_length,
             dims: [spec.observation.dim(), spec.action],
             fractions,
-        };
-        learner.begin_pool()?;
-        Ok(learner)
+        })
     }
 
     /// The opponents.
     pub fn pool(&self) -> &Pool {
         &self.pool
-    }
-
-    fn begin_pool(&mut self) -> Result<()> {
-        let own = Opponent::Frozen(Box::new(self.inner.policy()?));
-        let all = self.first.iter().cloned().chain([own]);
-        self.pool = Pool::new(&self.config, all.collect());
-        Ok(())
     }
 
     /// What there is to tell of an update, besides what the learner inside tells.
@@ -101,8 +92,7 @@ impl Algorithm for SelfPlayLearner {
         self.pool.end_update(self.rollout_length, &results);
         iteration.losses.extend(self.metrics(&iteration));
         if self.pool.is_due() {
-            let own = self.inner.policy()?;
-            self.pool.admit(Opponent::Frozen(Box::new(own)));
+            self.pool.admit(self.inner.policy()?);
         }
         Ok(iteration)
     }
@@ -113,8 +103,8 @@ impl Algorithm for SelfPlayLearner {
 
     fn start_from(&mut self, policy: &Policy, section: &mut Section) -> Result<(), SectionError> {
         self.inner.start_from(policy, section)?;
-        self.begin_pool()
-            .map_err(|error| SectionError(error.to_string()))
+        self.pool = Pool::new(&self.config, self.scripted.clone(), policy.clone());
+        Ok(())
     }
 
     fn save(&self, to: &mut Section) -> Result<()> {

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SelfPlay {
-    /// Most opponents at a time: when another joins, the oldest leaves.
+    /// Most policies among the opponents at a time: when another joins, the oldest leaves.
     pub pool: usize,
     /// Fraction of the bouts against the pool that the policy must win for a copy of it to join; a draw is half a
     /// win.

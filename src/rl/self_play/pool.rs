@@ -3,6 +3,7 @@
 use super::{Opponent, SelfPlay};
 use crate::container::{Section, SectionError};
 use crate::kernels::rng::uniform01;
+use crate::nn::Policy;
 use anyhow::Result;
 use std::sync::Arc;
 
@@ -51,8 +52,10 @@ pub struct BoutResult {
 /// The opponents of a training.
 pub struct Pool {
     config: SelfPlay,
-    /// The oldest first; never empty.
+    /// Those who never leave, then policies, the oldest first; never empty.
     members: Vec<PoolMember>,
+    /// How many never leave.
+    scripted: usize,
     /// Number of the next that joins.
     next: u32,
     /// Bouts since the last joined.
@@ -62,20 +65,25 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// A pool that begins with some opponents, of whom there is room for the last ones.
-    pub fn new(config: &SelfPlay, first: Vec<Opponent>) -> Pool {
+    /// A pool of opponents who never leave, and a first policy.
+    pub fn new(config: &SelfPlay, scripted: Vec<Opponent>, first: Policy) -> Pool {
+        let numbered = (0..).zip(scripted);
+        let members: Vec<PoolMember> = numbered
+            .map(|(id, opponent)| PoolMember::new(id, opponent))
+            .collect();
         let mut pool = Pool {
             config: *config,
-            members: Vec::new(),
-            next: 0,
+            scripted: members.len(),
+            next: members.len() as u32,
+            members,
             games: 0,
             updates: 0,
         };
-        first.into_iter().for_each(|opponent| pool.admit(opponent));
+        pool.admit(first);
         pool
     }
 
-    /// The opponents, the oldest first.
+    /// The opponents: those who never leave, then policies, the oldest first.
     pub fn members(&self) -> &[PoolMember] {
         &self.members
     }
@@ -124,11 +132,12 @@ impl Pool {
         wins && self.games >= games || late
     }
 
-    /// Lets an opponent join, in the place of the oldest if there is no room.
-    pub fn admit(&mut self, opponent: Opponent) {
-        if self.members.len() >= self.config.pool.max(1) {
-            self.members.remove(0);
+    /// Lets a policy join, in the place of the oldest if there is no room.
+    pub fn admit(&mut self, policy: Policy) {
+        if self.members.len() - self.scripted >= self.config.pool.max(1) {
+            self.members.remove(self.scripted);
         }
+        let opponent = Opponent::Frozen(Box::new(policy));
         self.members.push(PoolMember::new(self.next, opponent));
         self.next += 1;
         (self.games, self.updates) = (0, 0);
@@ -139,7 +148,7 @@ impl Pool {
         Opponents(self.members.clone())
     }
 
-    /// Saves all of it.
+    /// Saves all of it but for the scripts.
     ///
     /// # Errors
     /// None: it is in host memory.
@@ -150,18 +159,22 @@ impl Pool {
             .iter()
             .map(|member| [member.games, member.wins]);
         to.put("members", ids);
+        to.put("scripted", self.scripted);
         to.put("since_last", [self.games, self.updates]);
         to.put("next", self.next);
         to.put_array("bouts", &bouts.collect::<Vec<_>>());
         for member in &self.members {
-            let mut own = Section::default();
-            member.opponent.save(&mut own)?;
-            to.put_section(&format!("member-{}", member.id), own);
+            if let Opponent::Frozen(policy) = &*member.opponent {
+                let mut own = Section::default();
+                policy.save(&mut own)?;
+                to.put_section(&format!("member-{}", member.id), own);
+            }
         }
         Ok(())
     }
 
-    /// Puts back what [`Pool::save`] saved, of opponents that act on so many numbers by so many.
+    /// Puts back what [`Pool::save`] saved of a pool with the same scripts, of opponents that act on so many numbers by
+    /// so many.
     ///
     /// # Errors
     /// It is not that, or of another pool.
@@ -172,9 +185,13 @@ impl Pool {
         action: usize,
     ) -> Result<(), SectionError> {
         let ids: Vec<u32> = from.get("members")?;
-        if ids.is_empty() || ids.len() > self.config.pool {
-            let count = ids.len();
-            return Err(SectionError(format!("its pool has {count} members")));
+        let (scripted, room) = (from.get::<usize>("scripted")?, self.config.pool);
+        if scripted != self.scripted || !(1..=room).contains(&ids.len().saturating_sub(scripted)) {
+            return Err(SectionError(format!(
+                "its pool has {} members, {scripted} of them scripted: this one has {} of these, and room for {room} more",
+                ids.len(),
+                self.scripted
+            )));
         }
         let bouts: Vec<[f64; 2]> = from.take_array("bouts", ids.len())?;
         if !bouts
@@ -186,7 +203,8 @@ impl Pool {
         }
         [self.games, self.updates] = from.get("since_last")?;
         self.next = from.get("next")?;
-        let numbered = ids.windows(2).all(|pair| pair[0] < pair[1]);
+        let numbered = ids.windows(2).all(|pair| pair[0] < pair[1])
+            && ids.iter().take(scripted).copied().eq(0..scripted as u32);
         let last = ids.last().is_some_and(|last| *last < self.next);
         let won = bouts.iter().all(|[games, wins]| wins <= games);
         if !(numbered && last && won && self.next < u32::MAX) {
@@ -194,15 +212,30 @@ impl Pool {
         }
         let members = ids.into_iter().zip(bouts).map(|(id, [games, wins])| {
             let own = &mut from.take_section(&format!("member-{id}"));
-            let opponent = Opponent::load(own, observation, action)?;
+            let opponent = match self.members.get(id as usize) {
+                Some(member) if (id as usize) < scripted => member.opponent.clone(),
+                _ => Arc::new(frozen(own, observation, action)?),
+            };
             Ok(PoolMember {
+                id,
+                opponent,
                 games,
                 wins,
-                ..PoolMember::new(id, opponent)
             })
         });
         self.members = members.collect::<Result<_, SectionError>>()?;
         Ok(())
+    }
+}
+
+/// Reads a policy that acts on so many numbers by so many.
+fn frozen(from: &mut Section, observation: usize, action: usize) -> Result<Opponent, SectionError> {
+    let policy = Policy::load(from)?;
+    match (policy.observation().dim(), policy.action()) == (observation, action) {
+        true => Ok(Opponent::Frozen(Box::new(policy))),
+        false => Err(SectionError(
+            "an opponent is of environments with other dimensions".into(),
+        )),
     }
 }
 

@@ -73,11 +73,10 @@ impl SelfPlayEnv {
             bail!("self-play takes environments of two agents that tell who wins");
         };
         let observation = spec.observation.dim();
+        let mut rest = inner.rest_action();
+        rest.resize(spec.action, 0.0);
         let mut envs = SelfPlayEnv {
-            opponents: Arc::new(Opponents::only(Opponent::at_rest(
-                inner.rest_action(),
-                spec.action,
-            ))),
+            opponents: Arc::new(Opponents::only(Opponent::repeating(rest, observation))),
             bouts: Vec::new(),
             results: Ok(Vec::new()),
             sums: vec![0.0; names.len()],

@@ -173,17 +173,20 @@ impl<T: MotionTask> MotionTraining<T> {
             .collect()
     }
 
-    /// The opponents who do the same all the time, with whom a training by self-play begins.
-    fn first_opponents(&self, envs: &EnvBatch) -> Vec<Opponent> {
+    /// The opponents whom nobody has trained.
+    fn scripted_opponents(&self, envs: &EnvBatch) -> Vec<Opponent> {
+        let width = envs.spec().observation.dim();
         let Some(low_level) = &self.low_level else {
-            return vec![Opponent::Scripted(envs.rest_action())];
+            return vec![Opponent::repeating(envs.rest_action(), width)];
         };
         let scripts = self.scripts(low_level).into_iter();
-        let kept = scripts.filter_map(|(_, script)| match script {
-            Script::Keep(latent) => Some(Opponent::Scripted(latent)),
-            _ => None,
-        });
-        kept.collect()
+        // Latents that change at random are the untrained policy's.
+        let scripts = scripts.filter(|(_, script)| !matches!(script, Script::Random(..)));
+        let opponent = |script: Script| {
+            let rule = move |seen: &[f32]| script.latents(seen, width).unwrap_or_default();
+            Opponent::Scripted(Arc::new(rule))
+        };
+        scripts.map(|(_, script)| opponent(script)).collect()
     }
 }
 
@@ -254,8 +257,8 @@ impl<T: MotionTask> Task for MotionTraining<T> {
             return Ok(learner);
         };
         let (steps, fractions) = (config.ppo.rollout_length, T::STEP_FRACTIONS);
-        let first = self.first_opponents(envs);
-        let learner = SelfPlayLearner::new(learner, self_play, envs, first, steps, fractions)?;
+        let scripted = self.scripted_opponents(envs);
+        let learner = SelfPlayLearner::new(learner, self_play, envs, scripted, steps, fractions)?;
         Ok(Box::new(learner))
     }
 

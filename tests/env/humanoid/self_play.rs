@@ -7,7 +7,7 @@ use crate::support::inputs::{POISON, gpu, same};
 use footwork::container::Section;
 use footwork::env::humanoid::boxing::{Boxing, BoxingTask};
 use footwork::env::humanoid::task::open;
-use footwork::env::{Transition, VecEnv, termination};
+use footwork::env::{ObservationSpec, Transition, VecEnv, termination};
 use footwork::gpu::{Array, Device};
 use footwork::kernels::rng::random4;
 use footwork::nn::layer::Activation;
@@ -56,9 +56,35 @@ const SURE: f32 = -1e9;
 
 /// A pool of one who rests and two policies that do not hesitate.
 fn pool(envs: &dyn VecEnv) -> Pool {
-    let frozen = |seed| Opponent::Frozen(Box::new(policy(envs, seed, SURE)));
-    let resting = Opponent::Scripted(envs.rest_action());
-    Pool::new(&SelfPlay::default(), vec![resting, frozen(1), frozen(2)])
+    let resting = resting(envs);
+    let mut pool = Pool::new(&SelfPlay::default(), vec![resting], policy(envs, 1, SURE));
+    pool.admit(policy(envs, 2, SURE));
+    pool
+}
+
+fn resting(envs: &dyn VecEnv) -> Opponent {
+    Opponent::repeating(envs.rest_action(), envs.spec().observation.dim())
+}
+
+/// A policy of the smallest kind.
+fn tiny() -> Policy {
+    let network = NetworkConfig {
+        convolutions: Vec::new(),
+        encoder_hidden: Vec::new(),
+        hidden: vec![1],
+        activation: Activation::Relu,
+    };
+    let observation = ObservationSpec {
+        vector: 1,
+        grid: None,
+    };
+    Policy::new(&network, &observation, 1, 1).unwrap()
+}
+
+/// A pool of so many, all but one of whom never leave.
+fn pool_of(count: usize, chosen: &SelfPlay) -> Pool {
+    let scripted = (1..count).map(|number| Opponent::repeating(vec![number as f32], 1));
+    Pool::new(chosen, scripted.collect(), tiny())
 }
 
 /// The learner's agent and the opponent of every bout.
@@ -294,12 +320,6 @@ fn result(opponent: u32, score: f32) -> BoutResult {
     BoutResult { opponent, score }
 }
 
-fn scripted(count: usize) -> Vec<Opponent> {
-    (0..count)
-        .map(|number| Opponent::Scripted(vec![number as f32]))
-        .collect()
-}
-
 #[test]
 fn a_copy_joins_when_enough_bouts_are_won() {
     let chosen = SelfPlay {
@@ -308,7 +328,7 @@ fn a_copy_joins_when_enough_bouts_are_won() {
         decay: 1.0,
         ..SelfPlay::default()
     };
-    let mut pool = Pool::new(&chosen, scripted(2));
+    let mut pool = pool_of(2, &chosen);
     assert_eq!((pool.win_rate(), pool.is_due()), (None, false));
     // Draws are half a win: 8 of 10 are not more than four fifths.
     pool.end_update(
@@ -323,7 +343,7 @@ fn a_copy_joins_when_enough_bouts_are_won() {
     assert!((pool.win_rate().unwrap() - 0.8).abs() < 1e-9 && !pool.is_due());
     pool.end_update(16, &[result(1, 1.0)]);
     assert!(pool.is_due());
-    pool.admit(Opponent::Scripted(vec![9.0]));
+    pool.admit(tiny());
     // Bouts are counted anew, and those against strangers are not.
     assert!(!pool.is_due());
     pool.end_update(16, &[result(7, 1.0); 20]);
@@ -338,23 +358,24 @@ fn a_copy_joins_after_so_many_updates() {
         updates: 3,
         ..SelfPlay::default()
     };
-    let mut pool = Pool::new(&chosen, scripted(1));
+    let mut pool = pool_of(1, &chosen);
     for update in 1..=3 {
         assert!(!pool.is_due());
         pool.end_update(16, &[]);
         assert_eq!(pool.is_due(), update == 3);
     }
-    pool.admit(Opponent::Scripted(vec![1.0]));
+    pool.admit(tiny());
     assert!(!pool.is_due());
 }
 
 #[test]
-fn the_oldest_leaves() {
+fn the_oldest_policy_leaves() {
     let chosen = SelfPlay {
-        pool: 3,
+        pool: 2,
         ..SelfPlay::default()
     };
-    let mut pool = Pool::new(&chosen, scripted(3));
+    let mut pool = pool_of(2, &chosen);
+    pool.admit(tiny());
     let ids = |pool: &Pool| {
         pool.members()
             .iter()
@@ -362,12 +383,12 @@ fn the_oldest_leaves() {
             .collect::<Vec<_>>()
     };
     assert_eq!(ids(&pool), [0, 1, 2]);
-    pool.admit(Opponent::Scripted(vec![3.0]));
-    assert_eq!(ids(&pool), [1, 2, 3]);
+    pool.admit(tiny());
+    assert_eq!(ids(&pool), [0, 2, 3]);
     assert_eq!(pool.joined(), 4);
     let opponents = pool.opponents();
     // Who has left is stood in for by the newest.
-    assert_eq!([0, 1, 3].map(|id| opponents.index(id)), [2, 0, 2]);
+    assert_eq!([0, 1, 2].map(|id| opponents.index(id)), [0, 2, 1]);
 }
 
 #[test]
@@ -376,7 +397,7 @@ fn earlier_bouts_count_less() {
         decay: 0.5,
         ..SelfPlay::default()
     };
-    let mut pool = Pool::new(&chosen, scripted(1));
+    let mut pool = pool_of(1, &chosen);
     pool.end_update(2, &[result(0, 1.0); 8]);
     pool.end_update(2, &[result(0, 0.0); 2]);
     let member = &pool.members()[0];
@@ -385,7 +406,7 @@ fn earlier_bouts_count_less() {
 
 #[test]
 fn opponents_are_drawn_by_how_often_they_are_not_beaten() {
-    let mut pool = Pool::new(&SelfPlay::default(), scripted(4));
+    let mut pool = pool_of(4, &SelfPlay::default());
     let (won, lost) = (|id| result(id, 1.0), |id| result(id, 0.0));
     // Beaten always, in three of four, never; the last is not met.
     pool.end_update(0, &[won(0), won(1), won(1), won(1), lost(1), lost(2)]);
@@ -403,7 +424,7 @@ fn opponents_are_drawn_by_how_often_they_are_not_beaten() {
         // Three standard deviations of ten thousand.
         assert!((found - wanted).abs() < 0.015, "{found}, not {wanted}");
     }
-    let mut beaten = Pool::new(&SelfPlay::default(), scripted(4));
+    let mut beaten = pool_of(4, &SelfPlay::default());
     beaten.end_update(0, &[won(0), won(1), won(2), won(3)]);
     for found in drawn(&beaten) {
         assert!((found - 0.25).abs() < 0.015, "{found}");
@@ -418,7 +439,9 @@ fn a_pool_is_what_it_was_when_saved() {
     original.end_update(3, &[result(1, 1.0), result(2, 0.5)]);
     let mut section = Section::default();
     original.save(&mut section).unwrap();
-    let mut restored = Pool::new(&SelfPlay::default(), scripted(1));
+    let begun =
+        |chosen: &SelfPlay| Pool::new(chosen, vec![resting(&*envs)], policy(&*envs, 3, 0.0));
+    let mut restored = begun(&SelfPlay::default());
     restored.load(&mut section.clone(), dim, width).unwrap();
     let mut again = Section::default();
     restored.save(&mut again).unwrap();
@@ -427,12 +450,12 @@ fn a_pool_is_what_it_was_when_saved() {
     assert!(restored.load(&mut section.clone(), dim + 1, width).is_err());
     assert!(restored.load(&mut section.clone(), dim, width + 1).is_err());
     assert!(restored.load(&mut Section::default(), dim, width).is_err());
-    let mut small = Pool::new(
-        &SelfPlay {
-            pool: 2,
-            ..SelfPlay::default()
-        },
-        scripted(1),
-    );
-    assert!(small.load(&mut section, dim, width).is_err());
+    let mut small = begun(&SelfPlay {
+        pool: 1,
+        ..SelfPlay::default()
+    });
+    assert!(small.load(&mut section.clone(), dim, width).is_err());
+    // So is one with other scripts.
+    let mut other = pool_of(3, &SelfPlay::default());
+    assert!(other.load(&mut section, dim, width).is_err());
 }
