@@ -3,9 +3,9 @@
 use super::{Place, keys, rows};
 use serde_json::Value;
 
-/// Bouts of half a second, four opponents soon.
+/// Bouts of half a second, against one who stands and soon the last two policies.
 const SMALL: &str = "--device cpu --envs 8 --set ppo.rollout_length=4 --set ppo.minibatch_size=16 \
-                     --set task.episode_s=0.5 --set self_play.updates=2 --set self_play.pool=3 \
+                     --set task.episode_s=0.5 --set self_play.updates=2 --set self_play.pool=2 \
                      --set ppo.network.hidden=[16,16]";
 const STYLE: &str = "--set amp.hidden=[16,16] --set amp.minibatch_size=16 --set amp.replay_capacity=64 \
                      --set amp.replay_per_update=16 --set amp.steps=2";
@@ -68,7 +68,7 @@ fn fighters_learn_by_themselves_and_are_evaluated() {
 fn a_pool_goes_on_where_it_was() {
     let place = Place::with_low_level(105);
     for (kind, more) in [("alone", STYLE), ("steered", "--skills low")] {
-        let begun = format!("train box {SMALL} {more} --set self_play.pool=2");
+        let begun = format!("train box {SMALL} {more} --set self_play.pool=1");
         let [whole, halves] = ["whole", "halves"].map(|run| format!("{kind}-{run}"));
         place.done(&format!("{begun} --steps 256 --out {whole}"));
         place.done(&format!("{begun} --steps 128 --out {halves}"));
