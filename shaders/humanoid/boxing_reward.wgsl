@@ -41,6 +41,7 @@ struct Params {
     facing: u32,           // 1 if facing is rewarded, and required for the reward of a fall
     additive: u32,         // 1 if the way to a far opponent is rewarded by a sum
     stagger_steps: u32,    // after a blow in which a fall is a knock-down; 0 if every fall is one
+    blow_force: f32,       // N, above which a touch is a blow
     clinch_steps: u32,     // within `clinch` after which fighters are in one
     clinch: f32,           // m, the distance of one
     arena: f32,            // m, half its width
@@ -156,7 +157,7 @@ fn near_reward(me: u32) -> f32 {
 
 // Steps that are left in which a fall of the other is this one's doing.
 fn stagger_of(me: u32) -> f32 {
-    return select(max(carried(STAGGER_STEPS + me) - 1.0, 0.0), f32(params.stagger_steps), given[me] > 0.0);
+    return select(max(carried(STAGGER_STEPS + me) - 1.0, 0.0), f32(params.stagger_steps), given[me] > params.blow_force);
 }
 
 // A fall together is nobody's knock-down, and a fall long after the last blow is the own fault of who falls.

@@ -102,9 +102,10 @@ impl ClipMotion {
 
 /// Speed of the quicker hand between two moments.
 fn hands(before: &[f32], after: &[f32]) -> f32 {
-    // Key bodies come last, the hands first of them.
+    // Key bodies come last.
     let first = before.len() - 3 * KEY_BODIES.len();
-    let at = |moment: &[f32], hand: usize| Vec3::from_slice(&moment[first + 3 * hand..]);
-    let speed = |hand: usize| (at(after, hand) - at(before, hand)).length() / DT;
-    speed(0).max(speed(1))
+    let at = |moment: &[f32], key: usize| Vec3::from_slice(&moment[first + 3 * key..]);
+    let keys = (0..KEY_BODIES.len()).filter(|&key| KEY_BODIES[key].ends_with("hand"));
+    keys.map(|hand| (at(after, hand) - at(before, hand)).length() / DT)
+        .fold(0.0, f32::max)
 }

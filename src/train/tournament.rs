@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub struct Bouts {
     /// The task.
     pub task: Arc<BoxingTask>,
-    /// Whom nobody has trained, who does least first.
+    /// Those whom nobody has trained, the least active first.
     pub anchors: Vec<TournamentPlayer>,
 }
 

@@ -5,7 +5,7 @@ use super::own_fighter::OwnFighter;
 use super::reference::Reference;
 use crate::container::Section;
 use crate::env::VecEnv;
-use crate::env::humanoid::boxing::bout::{Bout, winners};
+use crate::env::humanoid::boxing::bout::{Bout, tally};
 use crate::env::humanoid::boxing::command::FightCommand;
 use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::env::humanoid::task::CpuHumanoidEnv;
@@ -226,6 +226,14 @@ impl BodyPlaythrough {
         }
     }
 
+    /// Tells red what to do, or, with `None`, lets the policy go on.
+    pub fn obey(&mut self, command: Option<FightCommand>) {
+        if self.command.is_none() {
+            self.own_driver = DriverState::default();
+        }
+        self.command = command;
+    }
+
     /// Whether red is moved by a driver of its own.
     fn obeys_own_driver(&self, context: &BodyContext) -> bool {
         let fighter = context.fighter.as_ref();
@@ -245,7 +253,7 @@ impl BodyPlaythrough {
     /// The start of the next episode, after the step of the context's environment that may have ended one.
     fn begin_next(&self, context: &mut BodyContext) -> Result<BodyPlaythrough> {
         let path = self.path.as_ref();
-        let over = |bout: &Bout| Ok::<_, anyhow::Error>(bout.over(winners(&context.env)?));
+        let over = |bout: &Bout| Ok::<_, anyhow::Error>(bout.over(&tally(&context.env)?));
         let bout = self.bout.as_ref().map(over).transpose()?;
         Ok(BodyPlaythrough {
             bout,

@@ -3,8 +3,9 @@
 use super::bout_scene::{flashes, ring};
 use super::scene::Scene;
 use crate::env::humanoid::boxing::BoxingTask;
-use crate::env::humanoid::boxing::bout::Bout;
+use crate::env::humanoid::boxing::bout::{Bout, tally};
 use crate::env::humanoid::task::CpuHumanoidEnv;
+use anyhow::Result;
 use std::sync::Arc;
 
 /// What happened in a bout besides the fighters' motion.
@@ -23,11 +24,20 @@ impl RecordedBout {
         }
     }
 
-    /// Takes in a step of the first environment.
-    pub fn push(&mut self, envs: &CpuHumanoidEnv) {
-        let last = self.moments.last().expect("the start");
-        let next = last.next(&self.task, &envs.batch.worlds[0], &envs.task_states[0]);
-        self.moments.push(next);
+    /// Takes in a step of the only environment. What the last one brings is seen in the frame before it: after it the
+    /// next bout has begun.
+    ///
+    /// # Errors
+    /// None: the environment is on the host.
+    pub fn push(&mut self, env: &CpuHumanoidEnv, running: bool) -> Result<()> {
+        let last = self.moments.last_mut().expect("the start");
+        if running {
+            let next = last.next(&self.task, &env.batch.worlds[0], &env.task_states[0]);
+            self.moments.push(next);
+        } else {
+            *last = last.ended(&tally(env)?);
+        }
+        Ok(())
     }
 
     /// How it stood in a frame.

@@ -77,7 +77,7 @@ pub fn film_strip(
     let mut shots = strip.replayed(motion, times.iter().copied());
     if let Some(bout) = bout {
         for (shot, time) in shots.iter_mut().zip(times) {
-            let frame = (time * motion.rate) as usize;
+            let frame = (time * motion.rate).round() as usize;
             bout.draw(&mut shot.scene, frame);
             shot.bout = Some(bout.at(frame).clone());
         }

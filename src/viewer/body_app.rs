@@ -117,11 +117,15 @@ impl BodyViewer {
     }
 
     fn keys(&mut self, ui: &Ui) {
-        if transport::keys_are_taken(ui) {
-            return;
-        }
+        let taken = transport::keys_are_taken(ui);
         if let Some(bout) = &mut self.bout {
-            bout.keys(ui);
+            match taken {
+                true => bout.release(),
+                false => bout.keys(ui),
+            }
+        }
+        if taken {
+            return;
         }
         if let Some(seek) = self.transport.keys(ui) {
             self.seek(seek);
@@ -149,7 +153,7 @@ impl BodyViewer {
         let is_last = self.timeline.at() + 1 == self.timeline.len();
         let command = bout.command(&self.camera, &now.q);
         if command != now.command && (is_last || bout.is_pressed()) {
-            self.timeline.change().command = command;
+            self.timeline.change().obey(command);
         }
     }
 
@@ -223,7 +227,7 @@ impl BodyViewer {
             }
         }
         ui.small("Drag the body to push it; drag elsewhere to turn the camera.");
-        if self.context.model().trees.len() > 1 && self.bout.is_none() {
+        if self.has_target() {
             ui.small("Click the ground to put the target there.");
         }
         ui.separator();
@@ -284,8 +288,12 @@ impl BodyViewer {
         }
     }
 
+    fn has_target(&self) -> bool {
+        self.context.model().trees.len() > 1 && self.bout.is_none()
+    }
+
     fn move_target(&mut self, ray: &Ray) {
-        let Some([x, z]) = ray.ground() else {
+        let Some([x, z]) = ray.ground().filter(|_| self.has_target()) else {
             return;
         };
         let at = simulated(Vec3::new(x, 0.0, z));

@@ -46,6 +46,11 @@ impl BoutPanel {
         }
     }
 
+    /// Takes no keys: somebody writes, or moves something.
+    pub fn release(&mut self) {
+        self.pressed = Pressed::default();
+    }
+
     /// Whether somebody fights and presses something.
     pub fn is_pressed(&self) -> bool {
         self.fights && self.pressed != Pressed::default()
@@ -84,8 +89,8 @@ impl BoutPanel {
         });
         ui.label(format!("{seconds:.1} s, {leads}"));
         let pair = |[red, blue]: [u32; 2]| format!("{red} : {blue}");
-        ui.label(format!("knock-downs {}", pair(bout.knockdowns)));
-        ui.label(format!("bouts won {}", pair(bout.won)));
+        ui.label(format!("bouts won {}", pair(bout.before.won)));
+        ui.label(format!("knock-downs {}", pair(bout.before.knockdowns)));
         ui.separator();
         ui.checkbox(&mut self.fights, "Fight yourself")
             .on_hover_text("F");

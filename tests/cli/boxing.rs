@@ -29,7 +29,7 @@ fn fighters_learn_by_themselves_and_are_evaluated() {
     let told = place.done(&format!(
         "train box --skills low {SMALL} --steps 96 --out steered"
     ));
-    assert!(told.out.contains("who does nothing"), "{told:?}");
+    assert!(told.out.contains("whom nobody has trained"), "{told:?}");
     let config = place.read("alone/config.toml");
     assert!(config.contains("[self_play]"), "{config}");
     for run in ["alone", "steered"] {

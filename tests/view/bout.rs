@@ -5,10 +5,11 @@ use crate::body::{keep, open, press, task, untrained};
 use eframe::egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use footwork::env::humanoid::boxing::bout::{Bout, REMEMBERED, Strike};
+use footwork::env::humanoid::boxing::bout::{Bout, REMEMBERED, Strike, Tally, tally};
 use footwork::env::humanoid::boxing::command::{FightCommand, ImaginedWorld};
 use footwork::env::humanoid::task::CpuHumanoidEnv;
 use footwork::env::humanoid::task::play::DrivenStep;
+use footwork::kernels::termination::{FAILED, SUCCESS};
 use footwork::physics::scenes;
 use footwork::train::body_episodes::BodyEpisodes;
 use footwork::train::body_policy::BodyPolicy;
@@ -145,7 +146,7 @@ fn a_hand_on_the_other_is_a_strike_that_is_remembered_for_a_while() {
     let mut step = DrivenStep::new(&env);
     let mut play = |env: &mut CpuHumanoidEnv, recorded: &mut RecordedBout| {
         step.play_by(env, |_| action.repeat(2));
-        recorded.push(env);
+        recorded.push(env, true).unwrap();
     };
     play(&mut env, &mut recorded);
     assert_eq!(recorded.at(1), &Bout::default());
@@ -210,15 +211,45 @@ fn who_is_ahead_leads_and_bouts_won_are_counted() {
         assert_eq!(bout(damage, knockdowns).leader(), leader);
     }
     let mut now = bout([3.0, 5.0], [1, 0]);
-    for (winners, won) in [
-        ([true, false], [1, 0]),
-        ([false, false], [1, 0]),
-        ([false, true], [1, 1]),
+    for (won, knockdowns, sum) in [
+        ([1, 0], [1, 0], ([1, 0], [1, 0])),
+        ([0, 0], [0, 0], ([1, 0], [1, 0])),
+        ([0, 1], [0, 2], ([1, 1], [1, 2])),
     ] {
-        now = now.over(winners);
-        assert_eq!(now.won, won);
+        now = now.over(&Tally { won, knockdowns });
+        assert_eq!((now.before.won, now.before.knockdowns), sum);
         assert_eq!((now.damage, now.knockdowns), ([0.0; 2], [0; 2]));
     }
+}
+
+/// After it the world is that of the next bout.
+#[test]
+fn a_knock_down_is_seen_in_the_last_frame_of_its_bout() {
+    let episodes = episodes();
+    let mut env = episodes.open(0);
+    let mut recorded = RecordedBout::new(episodes.bouts.clone().unwrap());
+    let action = env.task().rest_action().repeat(2);
+    let mut step = DrivenStep::new(&env);
+    strike_blue(&mut env);
+    step.play_by(&mut env, |_| action.clone());
+    recorded.push(&env, true).unwrap();
+    // Blue lies, out of reach.
+    let model = env.task().model().clone();
+    let world = &mut env.batch.worlds[0].state;
+    world.q.copy_from_slice(&model.qpos0);
+    world.v.fill(0.0);
+    let blue = &mut world.q[model.nq() / 2..];
+    let lying = Quat::from_rotation_y(0.5 * PI);
+    blue[..3].copy_from_slice(&[2.0, 0.0, 0.15]);
+    blue[3..7].copy_from_slice(&[lying.w, lying.x, lying.y, lying.z]);
+    step.play_by(&mut env, |_| action.clone());
+    assert_eq!(step.ends.host(), [SUCCESS, FAILED]);
+    recorded.push(&env, false).unwrap();
+    let sum = tally(&env).unwrap();
+    assert_eq!((sum.won, sum.knockdowns), ([1, 0], [1, 0]));
+    let last = recorded.at(1);
+    assert_eq!(last.knockdowns, [1, 0]);
+    assert!(last.damage[0] > 0.0 && last == recorded.at(2));
 }
 
 #[test]

@@ -59,6 +59,8 @@ crate::shader_params! {
         pub additive: u32,
         /// Steps after a blow in which a fall is a knock-down; 0 if every fall is one.
         pub stagger_steps: u32,
+        /// Force of the hands above which a touch is a blow, N.
+        pub blow_force: f32,
         /// Steps within `clinch` after which fighters are in one.
         pub clinch_steps: u32,
         /// Distance of a clinch, m.
@@ -247,7 +249,7 @@ pub fn step(
     }
     [0, 1].map(|me| FighterStep {
         reward: rewards[me],
-        end: exchange.end(me) + if leads(me, state) { LEADS } else { 0 },
+        end: exchange.end(me) + if has_lead(me, state) { LEADS } else { 0 },
         group: u32::from(near),
     })
 }
@@ -270,7 +272,7 @@ impl<'a> Exchange<'a> {
             let pairs = touching[me * PAIRS..][..PAIRS].iter();
             pairs.map(|force| force.length()).sum()
         });
-        let stagger = [0, 1].map(|me| match given[me] > 0.0 {
+        let stagger = [0, 1].map(|me| match given[me] > params.blow_force {
             true => params.stagger_steps as f32,
             false => (state[STAGGER_STEPS + me] - 1.0).max(0.0),
         });
@@ -370,10 +372,15 @@ impl<'a> Exchange<'a> {
     }
 }
 
-/// Whether a fighter would win if the bout ended now.
-fn leads(me: usize, state: &[f32]) -> bool {
-    let lead = |field: usize| state[field + me] - state[field + 1 - me];
-    lead(KNOCKDOWNS) > 0.0 || (lead(KNOCKDOWNS) == 0.0 && lead(DAMAGE) > 0.0)
+fn has_lead(me: usize, state: &[f32]) -> bool {
+    let both = |field: usize| [state[field], state[field + 1]];
+    leads(me, both(KNOCKDOWNS), both(DAMAGE))
+}
+
+/// Whether a fighter would win if the bout ended now, after so many knock-downs by each and so much damage.
+pub fn leads(me: usize, knockdowns: [f32; FIGHTERS], damage: [f32; FIGHTERS]) -> bool {
+    let lead = |of: [f32; FIGHTERS]| of[me] - of[1 - me];
+    lead(knockdowns) > 0.0 || (lead(knockdowns) == 0.0 && lead(damage) > 0.0)
 }
 
 fn is(fact: bool) -> f32 {

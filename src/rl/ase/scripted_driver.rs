@@ -1,19 +1,16 @@
 //! A low level that moves bodies by a script.
 
-use super::{FrozenLowLevel, LatentDraw};
+use super::{FrozenLowLevel, LatentDraw, STEPS_PER_DECISION};
 use crate::env::humanoid::driver::{BodyDriver, DriverState};
 use crate::kernels::learn::low_level_input::to_latent;
 use std::sync::Arc;
 
-/// Steps for which a body goes on as it has chosen.
-const CHOICE_STEPS: usize = 15;
-/// The same in seconds.
-const CHOICE_S: f32 = CHOICE_STEPS as f32 / 30.0;
-
-/// Metres that facing the place is worth: who goes backwards does not see it.
+/// How far a body looks ahead that chooses how to move, s.
+const AHEAD_S: f32 = 0.5;
+/// Weight of facing the place beside a metre of the way there: who goes backwards does not see it.
 const FACING: f32 = 2.0;
 
-/// By what nobody had to learn.
+/// A rule that chooses latents, which nobody had to learn.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Script {
     /// One latent is kept for good.
@@ -42,7 +39,7 @@ pub struct Stride {
 }
 
 impl Script {
-    /// The latents of bodies that observe rows of so many numbers; `None` if they do not hang on that alone.
+    /// The latents of bodies that observe rows of so many numbers; `None` if they depend on more than that.
     pub fn latents(&self, observation: &[f32], width: usize) -> Option<Vec<f32>> {
         let rows = observation.chunks_exact(width);
         match self {
@@ -87,7 +84,7 @@ impl BodyDriver for ScriptedDriver {
         if let Script::Random(draw, seed) = &self.script {
             draw.advance(observation.len() / self.observation, *seed, state);
         } else {
-            if state.steps.is_multiple_of(CHOICE_STEPS) {
+            if state.steps.is_multiple_of(STEPS_PER_DECISION) {
                 let latents = self.script.latents(observation, self.observation);
                 state.latents = latents.unwrap_or_default();
             }
@@ -101,8 +98,8 @@ impl BodyDriver for ScriptedDriver {
 fn nearest(strides: &[Stride], [ahead, left]: [f32; 2]) -> &[f32] {
     let bearing = left.atan2(ahead);
     let score = |stride: &Stride| {
-        let turned = stride.turn * CHOICE_S;
-        let nearer = stride.forward * CHOICE_S * (bearing - 0.5 * turned).cos();
+        let turned = stride.turn * AHEAD_S;
+        let nearer = stride.forward * AHEAD_S * (bearing - 0.5 * turned).cos();
         nearer + FACING * (bearing - turned).cos()
     };
     let best = strides.iter().max_by(|a, b| score(a).total_cmp(&score(b)));

@@ -7,6 +7,9 @@ use crate::nn::Policy;
 use anyhow::Result;
 use std::sync::Arc;
 
+/// Least weight of an opponent that is to be drawn.
+const LEAST_WEIGHT: f64 = 0.05;
+
 /// An opponent, and the bouts against it, of which earlier ones count less.
 #[derive(Clone)]
 pub struct PoolMember {
@@ -30,11 +33,11 @@ impl PoolMember {
         }
     }
 
-    /// How much it is to be drawn: the fraction of bouts that the learner does not win. Who has not been met yet is
-    /// drawn as if it always won.
+    /// How much it is to be drawn: the fraction of bouts that the learner does not win, or a little if it wins all: else
+    /// nobody would find out that it has forgotten how. Who has not been met yet is drawn as if it always won.
     pub fn weight(&self) -> f64 {
         match self.games > 0.0 {
-            true => (1.0 - self.wins / self.games).max(0.0),
+            true => (1.0 - self.wins / self.games).max(LEAST_WEIGHT),
             false => 1.0,
         }
     }
@@ -259,13 +262,9 @@ impl Opponents {
         found.unwrap_or(self.0.len() - 1)
     }
 
-    /// The number of the opponent that random `bits` draw, by their weights; where the learner always wins, each is
-    /// as likely.
+    /// The number of the opponent that random `bits` draw, by their weights.
     pub fn draw(&self, bits: u32) -> u32 {
-        let mut weights: Vec<f64> = self.0.iter().map(PoolMember::weight).collect();
-        if weights.iter().sum::<f64>() <= 0.0 {
-            weights.fill(1.0);
-        }
+        let weights: Vec<f64> = self.0.iter().map(PoolMember::weight).collect();
         let mut left = f64::from(uniform01(bits)) * weights.iter().sum::<f64>();
         let drawn = weights.iter().position(|weight| {
             left -= weight;

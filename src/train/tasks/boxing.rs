@@ -188,7 +188,7 @@ impl MotionTask for BoxTask {
 
     fn sentence(&self, found: &Evaluation) -> String {
         format!(
-            "{:.1} % of {} bouts won against one who does nothing, {:.1} % lost; {:.2} knock-downs a bout",
+            "{:.1} % of {} bouts won against one whom nobody has trained, {:.1} % lost; {:.2} knock-downs a bout",
             100.0 * found.success,
             found.episodes,
             100.0 * found.measure("lost"),

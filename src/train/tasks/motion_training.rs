@@ -87,8 +87,8 @@ pub trait MotionTask: Clone + Send + Sync + 'static {
         None
     }
 
-    /// Plays `episodes` episodes, whose starts depend on `seed` alone, under the policy's driver; one who does nothing is
-    /// there, too, to compare with or to play against.
+    /// Plays `episodes` episodes, whose starts depend on `seed` alone, under the policy's driver; in bouts against the
+    /// other one, the least active of those whom nobody has trained.
     fn evaluate(
         task: Arc<Self::Played>,
         library: &MotionLibrary,
@@ -138,8 +138,15 @@ pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
 impl<T: MotionTask> MotionTraining<T> {
     fn rate(&self, policy: &Policy, episodes: usize) -> T::Report {
         let task = self.task.judged(&self.library, EPISODES_SEED);
-        let (driver, anchors) = (self.driver(policy), self.anchors(&*task));
-        let drivers = [&*driver, &*anchors[0].driver];
+        let driver = self.driver(policy);
+        let fights = T::bouts(task.clone()).is_some();
+        let anchors = if fights {
+            self.anchors(&*task)
+        } else {
+            Vec::new()
+        };
+        let opponent = anchors.first().map_or(&*driver, |anchor| &*anchor.driver);
+        let drivers = [&*driver, opponent];
         T::evaluate(task, &self.library, drivers, episodes, EPISODES_SEED)
     }
 
@@ -155,7 +162,7 @@ impl<T: MotionTask> MotionTraining<T> {
         }
     }
 
-    /// Whom nobody has trained, who does least first.
+    /// Those whom nobody has trained, the least active first.
     fn anchors(&self, task: &dyn HumanoidTask) -> Vec<TournamentPlayer> {
         let observation = spec(task.model(), task.observation(), 1).observation.dim();
         let player = |name: &str, driver: Box<dyn BodyDriver>| TournamentPlayer {

@@ -510,6 +510,18 @@ fn winning_pays_more_than_clinching() {
 }
 
 #[test]
+fn the_shortest_stagger_is_a_step() {
+    let steps = |stagger_s| {
+        let boxing = Boxing {
+            stagger_s,
+            ..Boxing::default()
+        };
+        boxing.stagger_steps()
+    };
+    assert_eq!([0.0, 0.01, 0.1, 1.0].map(steps), [0, 1, 3, 30]);
+}
+
+#[test]
 fn damage_taken_and_dense_rewards_are_annealed() {
     let boxing = Boxing {
         damage_taken: [0.0, 2.0],

@@ -10,7 +10,7 @@ use footwork::motion::synthetic::{perform_boxing, perform_walk};
 use footwork::physics::motion_library::MotionLibrary;
 use footwork::physics::scenes;
 use footwork::rl::ase::{
-    Ase, FrozenLowLevel, LatentDraw, LowLevel, Script, ScriptedDriver, Stride,
+    Ase, FrozenLowLevel, LatentDraw, LowLevel, STEPS_PER_DECISION, Script, ScriptedDriver, Stride,
 };
 use footwork::train::{anchors, low_level};
 use std::sync::Arc;
@@ -71,9 +71,9 @@ fn who_advances_turns_to_its_opponent_and_goes_there() {
     let chosen = [1, 2, 3, 2].map(along).concat();
     assert_eq!(state.latents, chosen);
     assert_eq!(action, low_level.act(&seen, &chosen));
-    // It goes on for half a second, whatever the opponent does.
+    // It goes on for a decision, whatever the opponent does.
     let others = opposed(&[[0.1, 2.0]; 4]);
-    (1..15).for_each(|_| {
+    (1..STEPS_PER_DECISION).for_each(|_| {
         driver.act(&others, &mut state);
     });
     assert_eq!(state.latents, chosen);
@@ -108,6 +108,14 @@ fn latents_are_kept_or_change_as_in_training() {
         assert_eq!(state, wanted);
         assert_eq!(before == state.latents, step % 4 > 0, "{step}");
     }
+}
+
+#[test]
+fn the_latents_of_clips_are_those_of_the_recordings_that_were_learned() {
+    let low_level = some_low_level();
+    // The checkpoint's fingerprint is 0.
+    assert_eq!(low_level.latents(0, &[1.0]).unwrap().clips().count(), 1);
+    assert!(low_level.latents(1, &[1.0]).is_none());
 }
 
 #[test]

@@ -419,7 +419,7 @@ fn opponents_are_drawn_by_how_often_they_are_not_beaten() {
         }
         counts
     };
-    let wanted = [0.0, 0.25 / 2.25, 1.0 / 2.25, 1.0 / 2.25];
+    let wanted = [0.05, 0.25, 1.0, 1.0].map(|weight| weight / 2.3);
     for (found, wanted) in drawn(&pool).into_iter().zip(wanted) {
         // Three standard deviations of ten thousand.
         assert!((found - wanted).abs() < 0.015, "{found}, not {wanted}");

@@ -381,7 +381,7 @@ fn an_evaluation_tells_how_long_bodies_stay_up() {
     assert_ne!(report, evaluate(&stand, &policy, 20, 5));
     let task = Arc::new(StandTask::new(&stand, 4));
     let mut envs = CpuHumanoidEnv::unstaggered(task, 0..1, 4);
-    let motion = record(&mut envs, &policy, "stand", |_| ());
+    let motion = record(&mut envs, &policy, "stand", |_, _| ());
     assert!((2..=300).contains(&motion.frames) && motion.rate == 30.0);
 }
 

@@ -51,6 +51,7 @@ fn params(envs: usize) -> Params {
         facing: 1,
         additive: 0,
         stagger_steps: 0,
+        blow_force: 0.0,
         clinch_steps: 3,
         clinch: 0.5,
         arena: 3.0,
@@ -374,6 +375,17 @@ fn only_a_fall_soon_after_a_blow_is_a_knock_down() {
         assert_eq!(red.reward == 500.0, knocks_down, "{since}");
         assert_eq!(measures[2] == 1.0, knocks_down, "{since}");
     }
+    // A touch is no blow.
+    for (force, end) in [(9.9, TRUNCATED), (10.1, SUCCESS)] {
+        let params = Params {
+            blow_force: 10.0,
+            ..params
+        };
+        let mut ring = Ring::new([-0.5, 0.5], [0.0, PI]);
+        ring.touching[0] = Vec3::X * force;
+        ring.lay(1);
+        assert_eq!(ring.step(&params).0[0].end, end + LEADS, "{force}");
+    }
     // Blue's own blows are no reason for it to fall.
     let mut ring = Ring::new([-0.5, 0.5], [0.0, PI]);
     ring.touching[PAIRS] = Vec3::X;
@@ -466,6 +478,7 @@ fn boxing_rewards_agree() {
             facing: u32::from(case % 4 > 0),
             additive: u32::from(case % 2 > 0),
             stagger_steps: 2 * (case % 3) as u32,
+            blow_force: 5.0,
             damage_taken: 0.5 * case as f32,
             damage_scale: 0.01,
             damage_weight: 2.0,

@@ -4,6 +4,7 @@ use super::BoxingTask;
 use crate::env::VecEnv;
 use crate::env::humanoid::batch::SimulatedWorld;
 use crate::env::humanoid::task::{CpuHumanoidEnv, HumanoidTask};
+use crate::kernels::humanoid::boxing_reward::leads;
 use crate::kernels::humanoid::boxing_state::{DAMAGE, KNOCKDOWNS};
 use crate::kernels::humanoid::fighters::FIGHTERS;
 use crate::physics::kinematics::kinematics;
@@ -14,8 +15,6 @@ use glam::Vec3;
 
 /// Steps for which a strike is remembered: a fifth of a second.
 pub const REMEMBERED: u32 = 6;
-/// The weakest force that is a strike and not a touch, N: a twentieth of a fighter's weight.
-const WEAKEST: f32 = 25.0;
 /// Radius of a hand, m.
 const HAND: f32 = 0.04;
 
@@ -39,8 +38,17 @@ pub struct Bout {
     pub knockdowns: [u32; FIGHTERS],
     /// Strikes of the last steps.
     pub strikes: Vec<Strike>,
-    /// Bouts before this one that each has won.
+    /// What there was in the bouts before.
+    pub before: Tally,
+}
+
+/// What bouts that are over came to. Two numbers are those of red and blue.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// Bouts that each has won.
     pub won: [u32; FIGHTERS],
+    /// Knock-downs by each.
+    pub knockdowns: [u32; FIGHTERS],
 }
 
 impl Bout {
@@ -55,14 +63,27 @@ impl Bout {
             damage: [0, 1].map(|fighter| state[DAMAGE + fighter]),
             knockdowns: [0, 1].map(|fighter| state[KNOCKDOWNS + fighter] as u32),
             strikes: older.chain(strikes(task, world)).collect(),
-            won: self.won,
+            before: self.before,
         }
     }
 
-    /// The beginning of the next bout, after one that these have won.
-    pub fn over(&self, winners: [bool; FIGHTERS]) -> Bout {
+    /// The end of the bout by a step after which the world is that of the next one: `tally` is what this one came to.
+    pub fn ended(&self, tally: &Tally) -> Bout {
         Bout {
-            won: [0, 1].map(|fighter| self.won[fighter] + u32::from(winners[fighter])),
+            knockdowns: tally.knockdowns,
+            ..self.clone()
+        }
+    }
+
+    /// The beginning of the next bout, after one that came to a `tally`.
+    pub fn over(&self, tally: &Tally) -> Bout {
+        let sum =
+            |a: [u32; FIGHTERS], b: [u32; FIGHTERS]| [0, 1].map(|fighter| a[fighter] + b[fighter]);
+        Bout {
+            before: Tally {
+                won: sum(self.before.won, tally.won),
+                knockdowns: sum(self.before.knockdowns, tally.knockdowns),
+            },
             ..Bout::default()
         }
     }
@@ -70,24 +91,26 @@ impl Bout {
     /// Who would win if the bout ended now: who has knocked the other down more often or, that being equal, done more
     /// damage.
     pub fn leader(&self) -> Option<usize> {
-        let [red, blue] = [0, 1].map(|fighter| (self.knockdowns[fighter], self.damage[fighter]));
-        match (red > blue, blue > red) {
-            (true, _) => Some(0),
-            (_, true) => Some(1),
-            _ => None,
-        }
+        let knockdowns = self.knockdowns.map(|count| count as f32);
+        (0..FIGHTERS).find(|&fighter| leads(fighter, knockdowns, self.damage))
     }
 }
 
-/// Who has won the bouts that have ended in an environment, the only one, since its statistics were last taken.
+/// What the bouts came to that have ended in an environment, the only one, since its statistics were last taken.
 ///
 /// # Errors
 /// None: the environment is on the host.
-pub fn winners(env: &CpuHumanoidEnv) -> Result<[bool; FIGHTERS]> {
+pub fn tally(env: &CpuHumanoidEnv) -> Result<Tally> {
     let (names, stats) = (env.stat_names(), env.row_stats()?);
-    let successes = names.iter().position(|name| *name == "successes");
-    let of = |fighter: usize| successes.map(|stat| stats[fighter * names.len() + stat]);
-    Ok([0, 1].map(|fighter| of(fighter).is_some_and(|won| won > 0.0)))
+    let of = |name: &str| {
+        let stat = names.iter().position(|other| *other == name);
+        let stat = stat.expect("a statistic of bouts");
+        [0, 1].map(|fighter| stats[fighter * names.len() + stat] as u32)
+    };
+    Ok(Tally {
+        won: of("successes"),
+        knockdowns: of("knockdowns"),
+    })
 }
 
 /// The strikes of the last step.
@@ -103,5 +126,7 @@ fn strikes(task: &BoxingTask, world: &SimulatedWorld) -> Vec<Strike> {
         force: force.length(),
         age: 0,
     });
-    strikes.filter(|strike| strike.force > WEAKEST).collect()
+    strikes
+        .filter(|strike| strike.force > task.boxing().blow_force)
+        .collect()
 }

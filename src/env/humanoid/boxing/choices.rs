@@ -34,6 +34,8 @@ pub struct Boxing {
     /// Time after a blow in which a fall is a knock-down, s; 0 if every fall is one. Falls that are nobody's doing
     /// make a poor teacher.
     pub stagger_s: f32,
+    /// Force of the hands on torso and head above which a touch is a blow, N.
+    pub blow_force: f32,
     /// Factor of the forces in the reward.
     pub damage_scale: f32,
     /// Weight of the forces taken against those given, in the beginning and after `anneal_steps`: who fears them
@@ -82,6 +84,8 @@ impl Default for Boxing {
             // five steps being .97: a clinch must not pay more than winning.
             knockdown_bonus: 3000.0,
             stagger_s: 1.0,
+            // A twentieth of a fighter's weight.
+            blow_force: 25.0,
             damage_scale: 0.01,
             damage_taken: [0.0, 2.0],
             dense: [1.0, 0.25],
@@ -153,9 +157,12 @@ impl Boxing {
         ((self.clinch_s / DT).round() as u32).max(1)
     }
 
-    /// Steps after a blow in which a fall is a knock-down.
+    /// Steps after a blow in which a fall is a knock-down; 0 if every fall is one.
     pub fn stagger_steps(&self) -> u32 {
-        (self.stagger_s / DT).round() as u32
+        match self.stagger_s > 0.0 {
+            true => ((self.stagger_s / DT).round() as u32).max(1),
+            false => 0,
+        }
     }
 
     /// Whether the choices can be played.
@@ -172,6 +179,7 @@ impl Boxing {
             ("speed", self.speed),
             ("far_weight", self.far_weight),
             ("stagger_s", self.stagger_s),
+            ("blow_force", self.blow_force),
             ("damage_scale", self.damage_scale),
             ("damage_taken", self.damage_taken[0]),
             ("damage_taken", self.damage_taken[1]),

@@ -114,6 +114,7 @@ fn params(boxing: &Boxing, model: &Model) -> Params {
         facing: u32::from(boxing.facing),
         additive: u32::from(boxing.additive),
         stagger_steps: boxing.stagger_steps(),
+        blow_force: boxing.blow_force,
         clinch_steps: boxing.clinch_steps(),
         clinch: boxing.clinch_distance,
         arena: boxing.arena,

@@ -155,20 +155,21 @@ impl Episodes {
     }
 }
 
-/// The motion of one episode of the first environment, up to its end; `after` is shown every step but the last.
+/// The motion of one episode of the first environment, up to its end; `after` is shown every step, and whether the
+/// episode goes on after it.
 pub fn record(
     envs: &mut CpuHumanoidEnv,
     driver: &dyn BodyDriver,
     name: &str,
-    mut after: impl FnMut(&CpuHumanoidEnv),
+    mut after: impl FnMut(&CpuHumanoidEnv, bool),
 ) -> MotionClip {
     let mut q = envs.batch.worlds[0].state.q.clone();
     play(envs, driver, DriverState::default(), |envs, ends, _| {
         let running = ends[0] == termination::RUNNING;
         if running {
             q.extend(&envs.batch.worlds[0].state.q);
-            after(envs);
         }
+        after(envs, running);
         running
     });
     MotionClip::new(name, envs.task().model(), RATE, q)
