@@ -4,11 +4,14 @@ use crate::kernels::learn::sample_action;
 use crate::nn::Policy;
 use std::sync::Arc;
 
+/// Actions `[rows][action]` for observations `[rows][observation]`.
+pub type Rule = dyn Fn(&[f32]) -> Vec<f32> + Send + Sync;
+
 /// Somebody to play against, who learns no more.
 #[derive(Clone)]
 pub enum Opponent {
-    /// Follows a rule that nobody had to learn: actions `[rows][action]` for observations `[rows][observation]`.
-    Scripted(Arc<dyn Fn(&[f32]) -> Vec<f32> + Send + Sync>),
+    /// Follows a rule that nobody had to learn.
+    Scripted(Arc<Rule>),
     /// Draws from a policy's Gaussian, as the policy did while it learned.
     Frozen(Box<Policy>),
 }
