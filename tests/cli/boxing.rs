@@ -178,6 +178,10 @@ fn what_cannot_be_fought_is_refused() {
             "self_play.pool is 0",
         ),
         (
+            "train box --set self_play.scripted=1.5 --out run",
+            "self_play.scripted is 1.5",
+        ),
+        (
             "train box --set self_play.win_rate=2.0 --out run",
             "self_play.win_rate is 2",
         ),

@@ -17,10 +17,12 @@ use serde::{Deserialize, Serialize};
 
 /// Everything that may be chosen about self-play.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub struct SelfPlay {
     /// Most policies among the opponents at a time: when another joins, the oldest leaves.
     pub pool: usize,
+    /// Fraction of the bouts against scripted opponents.
+    pub scripted: f64,
     /// Fraction of the bouts against the pool that the policy must win for a copy of it to join; a draw is half a
     /// win.
     pub win_rate: f64,
@@ -36,6 +38,8 @@ impl Default for SelfPlay {
     fn default() -> Self {
         SelfPlay {
             pool: 4,
+            // Those who leave the ring by themselves teach little.
+            scripted: 0.25,
             win_rate: 0.8,
             games: 400,
             updates: 200,

@@ -148,7 +148,11 @@ impl Pool {
 
     /// Who may be drawn now.
     pub fn opponents(&self) -> Opponents {
-        Opponents(self.members.clone())
+        Opponents {
+            members: self.members.clone(),
+            scripted: self.scripted,
+            share: self.config.scripted,
+        }
     }
 
     /// Saves all of it but for the scripts.
@@ -243,33 +247,57 @@ fn frozen(from: &mut Section, observation: usize, action: usize) -> Result<Oppon
 }
 
 /// The opponents who may be drawn while a rollout is played.
-pub struct Opponents(Vec<PoolMember>);
+pub struct Opponents {
+    members: Vec<PoolMember>,
+    /// How many of them, the first, are scripted.
+    scripted: usize,
+    /// Fraction of the bouts against these.
+    share: f64,
+}
 
 impl Opponents {
     /// One alone: the first of every pool.
     pub fn only(first: Opponent) -> Opponents {
-        Opponents(vec![PoolMember::new(0, first)])
+        Opponents {
+            members: vec![PoolMember::new(0, first)],
+            scripted: 1,
+            share: 1.0,
+        }
     }
 
     /// All of them.
     pub fn iter(&self) -> impl Iterator<Item = &Opponent> {
-        self.0.iter().map(|member| &*member.opponent)
+        self.members.iter().map(|member| &*member.opponent)
     }
 
     /// The index of an opponent by its number; of the newest, if it has left.
     pub fn index(&self, id: u32) -> usize {
-        let found = self.0.iter().position(|member| member.id == id);
-        found.unwrap_or(self.0.len() - 1)
+        let found = self.members.iter().position(|member| member.id == id);
+        found.unwrap_or(self.members.len() - 1)
     }
 
-    /// The number of the opponent that random `bits` draw, by their weights.
+    /// The number of the opponent that random `bits` draw: a scripted one or a policy, and of these by their weights.
     pub fn draw(&self, bits: u32) -> u32 {
-        let weights: Vec<f64> = self.0.iter().map(PoolMember::weight).collect();
-        let mut left = f64::from(uniform01(bits)) * weights.iter().sum::<f64>();
-        let drawn = weights.iter().position(|weight| {
-            left -= weight;
-            left < 0.0
-        });
-        self.0[drawn.unwrap_or(self.0.len() - 1)].id
+        let (scripted, policies) = self.members.split_at(self.scripted);
+        let share = match (scripted.is_empty(), policies.is_empty()) {
+            (true, _) => 0.0,
+            (_, true) => 1.0,
+            _ => self.share,
+        };
+        let part = f64::from(uniform01(bits));
+        match part < share {
+            true => by_weight(scripted, part / share),
+            false => by_weight(policies, (part - share) / (1.0 - share)),
+        }
     }
+}
+
+/// The number of one of some opponents, who are not none, at a `part` of the sum of their weights.
+fn by_weight(members: &[PoolMember], part: f64) -> u32 {
+    let mut left = part * members.iter().map(PoolMember::weight).sum::<f64>();
+    let drawn = members.iter().find(|member| {
+        left -= member.weight();
+        left < 0.0
+    });
+    drawn.unwrap_or(&members[members.len() - 1]).id
 }
