@@ -35,7 +35,8 @@ pub fn scripts(
     }
     let quickest = least(boxing, |clip| -clips[clip].hands);
     let others = (0..clips.len()).filter(|&clip| clip != quickest || clips.len() == 1);
-    let quietest = least(others, |clip| clips[clip].speed);
+    // A step counts more than a gesture.
+    let quietest = least(others, |clip| 3.0 * clips[clip].speed + clips[clip].hands);
     let strides = clips.iter().zip(&latents).map(|(clip, latent)| Stride {
         latent: latent.clone(),
         forward: clip.forward,

@@ -220,7 +220,7 @@ fn sides_and_opponents_are_drawn_for_every_bout() {
     };
     sides.into_iter().for_each(|side| within(side, 0.5));
     // The first is scripted.
-    for (opponent, wanted) in met.into_iter().zip([0.25, 0.375, 0.375]) {
+    for (opponent, wanted) in met.into_iter().zip([0.5, 0.25, 0.25]) {
         within(opponent, wanted);
     }
 }
@@ -421,17 +421,17 @@ fn opponents_are_drawn_by_how_often_they_are_not_beaten() {
         }
         counts
     };
-    // Three are scripted, and met in a quarter of the bouts.
-    let [a, b, c] = [0.05, 0.25, 1.0].map(|weight| 0.25 * weight / 1.3);
-    let wanted = [a, b, c, 0.75];
+    // Three are scripted, and met in half of the bouts.
+    let [a, b, c] = [0.05, 0.25, 1.0].map(|weight| 0.5 * weight / 1.3);
+    let wanted = [a, b, c, 0.5];
     for (found, wanted) in drawn(&pool).into_iter().zip(wanted) {
         // Three standard deviations of ten thousand.
         assert!((found - wanted).abs() < 0.015, "{found}, not {wanted}");
     }
     let mut beaten = pool_of(4, &SelfPlay::default());
     beaten.end_update(0, &[won(0), won(1), won(2), won(3)]);
-    for (found, wanted) in drawn(&beaten).into_iter().zip([1.0, 1.0, 1.0, 9.0]) {
-        assert!((found - wanted / 12.0).abs() < 0.015, "{found}");
+    for (found, wanted) in drawn(&beaten).into_iter().zip([1.0, 1.0, 1.0, 3.0]) {
+        assert!((found - wanted / 6.0).abs() < 0.015, "{found}");
     }
 }
 
