@@ -38,7 +38,7 @@ impl Default for SelfPlay {
     fn default() -> Self {
         SelfPlay {
             pool: 4,
-            // They stay in the ring for longer than an untrained policy does.
+            // Of the shares that were tried the one with which fighters came to each other soonest.
             scripted: 0.5,
             win_rate: 0.8,
             games: 400,
