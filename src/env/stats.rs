@@ -16,8 +16,8 @@ impl Stats {
 
     /// A sum by name; 0 if there is none.
     pub fn sum(&self, name: &str) -> f64 {
-        let at = self.names.iter().position(|other| *other == name);
-        at.map_or(0.0, |at| self.sums[at])
+        let found = self.iter().find(|(other, _)| *other == name);
+        found.map_or(0.0, |(_, sum)| sum)
     }
 
     /// A sum over the number of episodes. None if no episode ended.

@@ -24,8 +24,8 @@ impl RecordedBout {
         }
     }
 
-    /// Takes in a step of the only environment. What the last one brings is seen in the frame before it: after it the
-    /// next bout has begun.
+    /// Takes in a step of the only environment. A knock-down in the last one is seen in the frame before it: after it
+    /// the next bout has begun.
     ///
     /// # Errors
     /// None: the environment is on the host.

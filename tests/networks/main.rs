@@ -92,7 +92,7 @@ impl Case {
         }
     }
 
-    /// The same samples, which end with the action under another latent, and both latents.
+    /// Samples that end with the action under another latent, and with both latents.
     fn diverse(mut self, latent: usize, weight: f32) -> Case {
         let more = ACTION + 2 * latent;
         let ends = normal(self.count() * more, 13);

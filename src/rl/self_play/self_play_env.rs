@@ -28,7 +28,7 @@ pub struct SelfPlayEnv {
     spec: EnvSpec,
     opponents: Arc<Opponents>,
     /// `[envs]`
-    bouts: Vec<Bout>,
+    bouts: Vec<Pairing>,
     /// Bouts that have ended since they were last taken, unless the device was lost.
     results: Result<Vec<BoutResult>>,
     /// Sums over the learner's episodes that have ended, `[stats]`, and the index of successes in them.
@@ -47,7 +47,7 @@ pub struct SelfPlayEnv {
 
 /// Who plays whom in an environment.
 #[derive(Clone, Copy)]
-struct Bout {
+struct Pairing {
     /// The learner's agent, 0 or 1.
     agent: usize,
     /// Number of the opponent.
@@ -109,10 +109,10 @@ impl SelfPlayEnv {
     }
 
     /// Who plays whom from now on.
-    fn draw(&self, env: usize) -> Bout {
+    fn draw(&self, env: usize) -> Pairing {
         let number = self.first + env as u32;
         let [agent, opponent, ..] = random4(self.seed, number, self.step_counter, BOUTS);
-        Bout {
+        Pairing {
             agent: index_below(agent, 2) as usize,
             opponent: self.opponents.draw(opponent),
         }
@@ -143,7 +143,7 @@ impl SelfPlayEnv {
         let theirs = Array::from_slice(&self.device, &theirs);
         let all = rows::join(&self.device, &[learner, &theirs]);
         let envs = self.bouts.len() as u32;
-        let pair = |(env, bout): (u32, &Bout)| match bout.agent {
+        let pair = |(env, bout): (u32, &Pairing)| match bout.agent {
             0 => [env, envs + env],
             _ => [envs + env, env],
         };
@@ -181,7 +181,7 @@ impl SelfPlayEnv {
         }
         let (now, stats) = (self.inner.row_stats()?, self.sums.len());
         for env in (0..ends.len()).filter(|&env| ends[env] != RUNNING) {
-            let Bout { agent, opponent } = self.bouts[env];
+            let Pairing { agent, opponent } = self.bouts[env];
             let gained = |agent: usize, stat: usize| {
                 let at = (2 * env + agent) * stats + stat;
                 now[at] - self.row_stats[at]
@@ -271,7 +271,7 @@ impl VecEnv for SelfPlayEnv {
         if bouts.iter().any(|&[agent, _]| agent > 1) {
             return Err(SectionError("a bout has more than two agents".into()));
         }
-        let bout = |[agent, opponent]: [u32; 2]| Bout {
+        let bout = |[agent, opponent]: [u32; 2]| Pairing {
             agent: agent as usize,
             opponent,
         };

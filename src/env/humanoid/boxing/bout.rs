@@ -1,9 +1,9 @@
 //! How a bout stands, step by step, for whoever watches it.
 
 use super::BoxingTask;
-use crate::env::VecEnv;
 use crate::env::humanoid::batch::SimulatedWorld;
 use crate::env::humanoid::task::{CpuHumanoidEnv, HumanoidTask};
+use crate::env::{Stats, VecEnv};
 use crate::kernels::humanoid::boxing_reward::leads;
 use crate::kernels::humanoid::boxing_state::{DAMAGE, KNOCKDOWNS};
 use crate::kernels::humanoid::fighters::FIGHTERS;
@@ -101,12 +101,10 @@ impl Bout {
 /// # Errors
 /// None: the environment is on the host.
 pub fn tally(env: &CpuHumanoidEnv) -> Result<Tally> {
-    let (names, stats) = (env.stat_names(), env.row_stats()?);
-    let of = |name: &str| {
-        let stat = names.iter().position(|other| *other == name);
-        let stat = stat.expect("a statistic of bouts");
-        [0, 1].map(|fighter| stats[fighter * names.len() + stat] as u32)
-    };
+    let (names, sums) = (env.stat_names(), env.row_stats()?);
+    let rows = sums.chunks_exact(names.len());
+    let rows: Vec<Stats> = rows.map(|row| Stats::new(names, row)).collect();
+    let of = |name: &str| [0, 1].map(|fighter: usize| rows[fighter].sum(name) as u32);
     Ok(Tally {
         won: of("successes"),
         knockdowns: of("knockdowns"),

@@ -55,7 +55,7 @@ impl ImaginedWorld {
             store(&mut other[3..], turned);
             world.v[own_v..].fill(0.0);
         }
-        self.env.want(0, aim.way, aim.face);
+        self.env.steer(0, aim.way, aim.face);
         self.env.observe_all();
         self.env.seen(0)
     }

@@ -2,10 +2,10 @@
 
 use super::BoxingTask;
 use super::corners::Corners;
-use crate::env::VecEnv;
 use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::task::play::{Episodes, play_episodes_by};
 use crate::env::humanoid::task::{CpuHumanoidEnv, DT};
+use crate::env::{Stats, VecEnv};
 use crate::kernels::humanoid::fighters::FIGHTERS;
 use serde::Serialize;
 use std::sync::Arc;
@@ -58,13 +58,12 @@ pub fn evaluate(
 fn report(found: &Episodes, envs: &CpuHumanoidEnv) -> BoxingReport {
     let names = envs.stat_names();
     let bouts = envs.spec().envs;
+    let rows = found.sums.iter().map(|sums| Stats::new(names, sums));
+    let rows: Vec<Stats> = rows.collect();
     let mean = |name: &str| {
-        let stat = names.iter().position(|other| *other == name);
-        let stat = stat.expect("a statistic of bouts");
         [0, 1].map(|corner| {
-            let rows = found.sums.iter().skip(corner).step_by(FIGHTERS);
-            let sums = rows.filter_map(|sums| sums.get(stat));
-            sums.map(|&sum| f64::from(sum)).sum::<f64>() / bouts.max(1) as f64
+            let own = rows.iter().skip(corner).step_by(FIGHTERS);
+            own.map(|row| row.sum(name)).sum::<f64>() / bouts.max(1) as f64
         })
     };
     let [won, lost] = mean("successes");

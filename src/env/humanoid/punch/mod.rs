@@ -237,7 +237,7 @@ impl HumanoidTask for PunchTask {
         place_target::stand_at(at, &mut world.q, &mut world.v, state, &self.params.place);
     }
 
-    fn want(&self, moving: Vec2, facing: Vec2, state: &mut [f32]) {
+    fn steer(&self, moving: Vec2, facing: Vec2, state: &mut [f32]) {
         state[MOVING..MOVING + 2].copy_from_slice(&moving.to_array());
         state[FACING..FACING + 2].copy_from_slice(&facing.to_array());
     }

@@ -118,10 +118,10 @@ impl CpuHumanoidEnv {
         self.observe_all();
     }
 
-    /// Says where somebody wants the body of an environment to move and to face: see [`HumanoidTask::want`].
-    pub fn want(&mut self, env: usize, moving: Vec2, facing: Vec2) {
+    /// Says where somebody wants the body of an environment to move and to face: see [`HumanoidTask::steer`].
+    pub fn steer(&mut self, env: usize, moving: Vec2, facing: Vec2) {
         let state = &mut self.task_states[env];
-        self.common.task.want(moving, facing, state);
+        self.common.task.steer(moving, facing, state);
     }
 
     /// Contacts that a saved state has room for: a GPU's, or as many as a world has.

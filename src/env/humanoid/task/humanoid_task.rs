@@ -102,7 +102,7 @@ pub trait HumanoidTask: Send + Sync {
     fn move_target(&self, _at: [f32; 2], _world: &mut SimulatorState, _state: &mut [f32]) {}
 
     /// Says where somebody wants the body to move and to face, unit vectors on the ground, if the task has such wishes.
-    fn want(&self, _moving: Vec2, _facing: Vec2, _state: &mut [f32]) {}
+    fn steer(&self, _moving: Vec2, _facing: Vec2, _state: &mut [f32]) {}
 
     /// Observes what the task adds for an agent.
     fn observe(
