@@ -56,13 +56,14 @@
 //! - `rl`: rollouts, advantages, PPO (`train`);
 //! - `train`: tasks by name, configuration, run directory, checkpoints, evaluation (`train`);
 //! - `view`, `viewer`: scenes and the renderer that draws them; windows (`viewer`);
+//! - `export`: policies, motion and models in files of other programs (`export`);
 //! - `bench`: what each device makes of each stage (`report` and `train`);
 //! - [`report`]: tables; pictures and TensorBoard events (feature `report`);
 //! - [`container`]: the file format of databases and checkpoints; [`input_file`]: files that users name.
 //!
 //! # Features
 //!
-//! All of `cli`, `gpu`, `report`, `train` and `viewer` are on by default. Without any of them the crate
+//! All of `cli`, `export`, `gpu`, `report`, `train` and `viewer` are on by default. Without any of them the crate
 //! is motion matching and physics on the CPU, without burn, wgpu or a command line. `train,cli` trains on
 //! the CPU. No real GPU has been measured yet: the shaders are tested on Mesa's lavapipe.
 
@@ -74,6 +75,8 @@ pub mod bench;
 pub mod container;
 #[cfg(feature = "train")]
 pub mod env;
+#[cfg(feature = "export")]
+pub mod export;
 pub mod gpu;
 pub mod input_file;
 pub mod kernels;

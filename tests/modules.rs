@@ -11,7 +11,7 @@ use std::path::Path;
 const ORDER: [&[&str]; 12] = [
     &["cli"],
     &["viewer"],
-    &["bench"],
+    &["bench", "export"],
     &["view"],
     &["train"],
     &["rl"],

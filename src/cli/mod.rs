@@ -6,6 +6,7 @@ mod bench;
 mod compare;
 mod data;
 mod eval;
+mod export;
 #[cfg(feature = "viewer")]
 mod latents;
 #[cfg(feature = "viewer")]
@@ -47,6 +48,8 @@ enum Command {
     Compare(compare::Compare),
     /// Evaluate a trained policy on a fixed set of episodes
     Eval(eval::Eval),
+    /// Take a trained policy, its motion or its body away in a file that other programs read
+    Export(export::Export),
     /// Let trained fighters meet each other: who beats whom, and ratings
     Tournament(tournament::Tournament),
     /// Open a window on a trained policy, or on motion
@@ -77,6 +80,7 @@ impl Command {
             Command::Ablate(ablate) => ablate.run(),
             Command::Compare(compare) => compare.run(),
             Command::Eval(eval) => eval.run(),
+            Command::Export(export) => export.run(),
             Command::Tournament(tournament) => tournament.run(),
             #[cfg(feature = "viewer")]
             Command::Play(play) => play.run(),
