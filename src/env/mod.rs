@@ -7,6 +7,7 @@ pub mod batch;
 pub mod body_view;
 pub mod curriculum;
 pub mod demonstrations;
+pub mod description;
 pub mod humanoid;
 pub mod live_view;
 pub mod locomotion;

@@ -1,11 +1,12 @@
 //! The motion-matching tasks: reach a target, on an empty plane or among moving obstacles.
 //!
 //! [`task`] holds what may be chosen about them, [`config`] what else environments are opened with,
-//! [`kernel_params`] turns both into the kernels' parameters; [`gpu`] and [`cpu`] step environments by
+//! [`describe`] says what their numbers mean, [`kernel_params`] turns both into the kernels' parameters; [`gpu`] and [`cpu`] step environments by
 //! the shaders or by their twins.
 
 pub mod config;
 pub mod cpu;
+pub mod describe;
 pub mod env_state;
 pub mod gpu;
 pub mod kernel_params;

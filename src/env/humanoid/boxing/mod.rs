@@ -11,6 +11,7 @@ pub mod bout;
 mod choices;
 pub mod command;
 pub mod corners;
+mod describe;
 pub mod evaluate;
 
 use super::batch::SimulatedWorld;
@@ -19,6 +20,7 @@ use super::task::{
     DT, EpisodeRules, GpuHumanoidTask, HumanoidTask, StepContext, StepOutcome, TaskBuffers,
     agent_bodies, agent_body, spec,
 };
+use crate::env::description::VectorPart;
 use crate::env::spec::EnvSpec;
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::humanoid::boxing_state::state_dim;
@@ -250,6 +252,10 @@ impl HumanoidTask for BoxingTask {
 
     fn observation(&self) -> usize {
         boxing_observe::DIM
+    }
+
+    fn describe(&self) -> Vec<VectorPart> {
+        describe::parts(self.boxing.arena)
     }
 
     fn state_dim(&self) -> usize {

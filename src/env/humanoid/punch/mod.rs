@@ -4,6 +4,7 @@
 //! policy.
 
 mod choices;
+mod describe;
 pub mod evaluate;
 mod steering;
 
@@ -12,6 +13,7 @@ use super::recorded::{mean_action, start_states};
 use super::task::{
     EpisodeRules, GpuHumanoidTask, HumanoidTask, StepContext, StepOutcome, TaskBuffers,
 };
+use crate::env::description::VectorPart;
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::humanoid::punch_state::{FACING, HIT_STEPS, MOVING, PUNCH_STATE};
 use crate::kernels::humanoid::{place_target, punch_observe, punch_reward};
@@ -198,6 +200,10 @@ impl HumanoidTask for PunchTask {
 
     fn observation(&self) -> usize {
         punch_observe::dim(self.joystick())
+    }
+
+    fn describe(&self) -> Vec<VectorPart> {
+        describe::parts(self.joystick())
     }
 
     fn state_dim(&self) -> usize {

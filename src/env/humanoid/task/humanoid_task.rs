@@ -1,6 +1,7 @@
 //! What a task adds to a step of the physics.
 
 use super::rules::EpisodeRules;
+use crate::env::description::VectorPart;
 use crate::env::humanoid::batch::{GpuSimulatorBatch, SimulatedWorld};
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::termination;
@@ -62,6 +63,11 @@ pub trait HumanoidTask: Send + Sync {
     /// Numbers that are observed besides the body's own, which come first.
     fn observation(&self) -> usize {
         0
+    }
+
+    /// What each of these numbers means.
+    fn describe(&self) -> Vec<VectorPart> {
+        Vec::new()
     }
 
     /// Numbers that a world carries for the task.

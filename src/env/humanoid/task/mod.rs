@@ -5,6 +5,7 @@
 
 mod common;
 mod cpu;
+pub mod describe;
 mod gpu;
 mod humanoid_task;
 mod open;

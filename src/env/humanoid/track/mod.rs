@@ -2,6 +2,7 @@
 //!
 //! [`Tracking`] are its choices, [`TrackTask`] plays it, and [`evaluate`] judges a policy.
 
+mod describe;
 mod references;
 
 use super::batch::SimulatedWorld;
@@ -13,6 +14,7 @@ use super::task::{
     CpuHumanoidEnv, EpisodeRules, GpuHumanoidTask, HumanoidTask, KEY_BODIES, StepContext,
     StepOutcome, TaskBuffers, check_range,
 };
+use crate::env::description::VectorPart;
 use crate::gpu::{Buffer, Gpu};
 use crate::kernels::humanoid::track_reward::{KEYS, TrackedBody};
 use crate::kernels::humanoid::track_state::{ROW, TRACK_STATE};
@@ -173,6 +175,10 @@ impl HumanoidTask for TrackTask {
 
     fn observation(&self) -> usize {
         track_observe::dim(self.model())
+    }
+
+    fn describe(&self) -> Vec<VectorPart> {
+        describe::parts(self.model())
     }
 
     fn state_dim(&self) -> usize {
