@@ -8,6 +8,7 @@ mod format;
 mod gltf;
 mod mjcf;
 mod onnx;
+mod policy;
 mod safetensors;
 
 pub use format::{ExportFormat, TrainedRun};

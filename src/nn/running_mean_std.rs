@@ -9,7 +9,7 @@ use anyhow::Result;
 use rayon::prelude::*;
 
 /// Normalised numbers are at most this large.
-const CLIP: f32 = 10.0;
+pub const CLIP: f32 = 10.0;
 /// Smaller standard deviations count as this.
 const MIN_STD: f32 = 1e-2;
 /// Rows whose sums a core takes in one go: what is summed over must not depend on how many there are.
@@ -121,6 +121,16 @@ impl RunningMeanStd {
         self.moments.host()
     }
 
+    /// Means `[dim]`, of moments in host memory.
+    pub fn mean(&self) -> &[f32] {
+        &self.moments()[..self.dim]
+    }
+
+    /// The standard deviations `[dim]` by which numbers are divided, of moments in host memory.
+    pub fn std(&self) -> Vec<f32> {
+        self.moments()[self.dim..].iter().map(std).collect()
+    }
+
     /// A copy of the moments in host memory.
     ///
     /// # Errors
@@ -205,10 +215,16 @@ fn take_in(moments: &mut [f32], rows: &[f32], weight: f64) {
     }
 }
 
+fn std(variance: &f32) -> f32 {
+    variance.sqrt().max(MIN_STD)
+}
+
 fn normalize(moments: &[f32], rows: &mut [f32]) {
     let (means, variances) = moments.split_at(moments.len() / 2);
-    let std = |variance: &f32| 1.0 / variance.sqrt().max(MIN_STD);
-    let inv_std: Vec<f32> = variances.iter().map(std).collect();
+    let inv_std: Vec<f32> = variances
+        .iter()
+        .map(|variance| 1.0 / std(variance))
+        .collect();
     for row in rows.chunks_exact_mut(means.len()) {
         for ((value, mean), inv_std) in row.iter_mut().zip(means).zip(&inv_std) {
             *value = ((*value - mean) * inv_std).clamp(-CLIP, CLIP);
