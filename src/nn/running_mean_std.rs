@@ -126,9 +126,13 @@ impl RunningMeanStd {
         &self.moments()[..self.dim]
     }
 
-    /// The standard deviations `[dim]` by which numbers are divided, of moments in host memory.
-    pub fn std(&self) -> Vec<f32> {
-        self.moments()[self.dim..].iter().map(std).collect()
+    /// What numbers less their means are multiplied by, `[dim]`, of moments in host memory.
+    pub fn inv_std(&self) -> Vec<f32> {
+        let variances = &self.moments()[self.dim..];
+        variances
+            .iter()
+            .map(|&variance| inv_std(variance))
+            .collect()
     }
 
     /// A copy of the moments in host memory.
@@ -215,19 +219,23 @@ fn take_in(moments: &mut [f32], rows: &[f32], weight: f64) {
     }
 }
 
-fn std(variance: &f32) -> f32 {
-    variance.sqrt().max(MIN_STD)
-}
-
 fn normalize(moments: &[f32], rows: &mut [f32]) {
     let (means, variances) = moments.split_at(moments.len() / 2);
     let inv_std: Vec<f32> = variances
         .iter()
-        .map(|variance| 1.0 / std(variance))
+        .map(|&variance| inv_std(variance))
         .collect();
     for row in rows.chunks_exact_mut(means.len()) {
         for ((value, mean), inv_std) in row.iter_mut().zip(means).zip(&inv_std) {
-            *value = ((*value - mean) * inv_std).clamp(-CLIP, CLIP);
+            *value = normalized(*value, *mean, *inv_std);
         }
     }
+}
+
+fn inv_std(variance: f32) -> f32 {
+    1.0 / variance.sqrt().max(MIN_STD)
+}
+
+fn normalized(value: f32, mean: f32, inv_std: f32) -> f32 {
+    ((value - mean) * inv_std).clamp(-CLIP, CLIP)
 }

@@ -16,8 +16,8 @@ use serde::Serialize;
 pub struct NetworkDescription {
     /// How the names of its parameters begin.
     pub name: String,
-    /// Inputs are, less `NAME.mean`, over `NAME.std`, limited to this on both sides; absent if they are taken as
-    /// they are. Maps have a `NAME.maps_mean` and a `NAME.maps_std` of their own.
+    /// Inputs are, less `NAME.mean`, times `NAME.inv_std`, limited to this on both sides; absent if they are taken as
+    /// they are. Maps have a `NAME.maps_mean` and a `NAME.maps_inv_std` of their own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clip: Option<f32>,
     /// Layers over the maps, whose output, row by row, joins the vector behind it.
@@ -53,8 +53,8 @@ pub fn actor(
     let spec = policy.observation();
     let (mut vector, mut maps) = (vector.to_string(), maps.map(str::to_string));
     if let Some(moments) = &policy.normalizer {
-        let (mean, std) = (moments.mean(), moments.std());
-        let own = [&mean[..spec.vector], &std[..spec.vector]];
+        let (mean, inv_std) = (moments.mean(), moments.inv_std());
+        let own = [&mean[..spec.vector], &inv_std[..spec.vector]];
         vector = normalized(
             graph,
             &vector,
@@ -63,7 +63,7 @@ pub fn actor(
             &[spec.vector],
         );
         if let (Some(values), Some(grid @ [height, width, channels])) = (&mut maps, spec.grid) {
-            let own = [&mean[spec.vector..], &std[spec.vector..]];
+            let own = [&mean[spec.vector..], &inv_std[spec.vector..]];
             let own = own.map(|own| channels_first(grid).map(|from| own[from]).collect());
             let shape = [channels, height, width];
             *values = normalized(graph, values, [name, "maps_"], own, &shape);
@@ -119,13 +119,13 @@ fn normalized(
     graph: &mut Graph,
     value: &str,
     [name, kind]: [&str; 2],
-    [mean, std]: [Vec<f32>; 2],
+    [mean, inv_std]: [Vec<f32>; 2],
     shape: &[usize],
 ) -> String {
     let mean = graph.parameter(format!("{name}.{kind}mean"), shape, mean);
-    let std = graph.parameter(format!("{name}.{kind}std"), shape, std);
+    let inv_std = graph.parameter(format!("{name}.{kind}inv_std"), shape, inv_std);
     let centred = graph.node("Sub", &[value, &mean]);
-    let scaled = graph.node("Div", &[&centred, &std]);
+    let scaled = graph.node("Mul", &[&centred, &inv_std]);
     graph.clip(&scaled, CLIP)
 }
 
