@@ -7,6 +7,7 @@ mod boxing;
 #[cfg(unix)]
 mod damaged;
 mod data;
+mod export;
 #[path = "../support/low_level.rs"]
 mod low_level;
 #[path = "../support/mocap.rs"]
@@ -14,6 +15,8 @@ mod mocap;
 mod obstacles;
 #[cfg(unix)]
 mod places;
+#[path = "../support/python.rs"]
+mod python;
 mod refused;
 mod render;
 mod sim;
