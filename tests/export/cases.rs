@@ -1,26 +1,32 @@
 //! Policies of every kind that nobody has trained, what they are given, and what our own pass makes of it.
 
 use super::low_level;
-use footwork::env::EnvSpec;
-use footwork::env::humanoid::driver::DriverState;
+use footwork::env::humanoid::action::action_scale;
+use footwork::env::humanoid::driver::{BodyDriver, DriverState};
+use footwork::env::humanoid::task::CpuHumanoidEnv;
 use footwork::env::humanoid::task::play::play_by;
+use footwork::env::humanoid::task::spec;
 use footwork::env::locomotion::{CpuLocomotion, EnvConfig};
+use footwork::env::{EnvSpec, VecEnv};
 use footwork::export::{FORMATS, TrainedRun, export};
 use footwork::gpu::{Array, Device};
 use footwork::kernels::humanoid::action_targets::set_targets;
 use footwork::kernels::rng::{gaussian, random4};
-use footwork::motion::features::POSE_DIM;
+use footwork::motion::features::{POSE_DIM, TRAJECTORY_DIM};
+use footwork::motion::{bvh, synthetic};
 use footwork::nn::layer::{Activation, Convolution};
 use footwork::nn::{NetworkConfig, Policy, RunningMeanStd};
+use footwork::physics::scenes;
 use footwork::rl::ase::{LowLevel, STEPS_PER_DECISION};
 use footwork::train::body_episodes::BodyEpisodes;
 use footwork::train::checkpoint::{Checkpoint, Header};
 use footwork::train::config::{Config, Preset};
 use footwork::train::locomotion::Locomotion;
 use footwork::train::task::Task;
-use footwork::train::tasks::find;
+use footwork::train::tasks::{REGISTRY, find};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 use tempfile::TempDir;
 
 /// Steps that are recorded, and environments that are stepped.
@@ -56,8 +62,18 @@ impl UntrainedRun {
         export(&run, format.expect("such a format")).expect("an exported run")
     }
 
+    /// Writes the run in a format, and beside it what our own pass does.
+    pub fn write(&self, recorded: &Recorded, format: &str, folder: &Path) {
+        let file = |ending: &str| folder.join(format!("{}.{ending}", self.name));
+        std::fs::write(file(format), self.exported(format)).expect("a file");
+        for (name, values) in recorded.inputs.iter().chain(&recorded.outputs) {
+            let bytes: &[u8] = bytemuck::cast_slice(values);
+            std::fs::write(file(&format!("{name}.f32")), bytes).expect("a file");
+        }
+    }
+
     /// What our own pass does in some steps, and for random observations.
-    pub fn recorded(&self) -> Recorded {
+    fn recorded(&self) -> Recorded {
         match (self.task.locomotion(), self.task.body()) {
             (Some(locomotion), _) => self.locomotion(locomotion),
             (None, Some(body)) => self.body(&body),
@@ -74,7 +90,7 @@ impl UntrainedRun {
             level: 9,
         };
         let mut envs = CpuLocomotion::new(locomotion.matcher.clone(), &config);
-        let mut seen = noise(RANDOM_ROWS * policy.observation().dim(), 3);
+        let mut seen = self.random(policy.observation().dim());
         for _ in 0..STEPS {
             let observation = envs.observation();
             envs.step_without_reset(&policy.mean(&observation));
@@ -83,7 +99,9 @@ impl UntrainedRun {
         let action = policy.mean(&seen);
         let normal = &locomotion.matcher.database.normalisation;
         let (mean, scale) = (&normal.mean[POSE_DIM..], &normal.scale[POSE_DIM..]);
-        let metres = |(at, action): (usize, &f32)| action / scale[at % 12] + mean[at % 12];
+        let metres = |(at, action): (usize, &f32)| {
+            action / scale[at % TRAJECTORY_DIM] + mean[at % TRAJECTORY_DIM]
+        };
         let trajectory = action.iter().enumerate().map(metres).collect();
         let spec = policy.observation();
         let rows = || seen.chunks_exact(spec.dim());
@@ -110,169 +128,191 @@ impl UntrainedRun {
         recorded
     }
 
-    fn body(&self, body: &BodyEpisodes) -> Recorded {
-        let mut recorded = Recorded::default();
-        let mut envs = body.open_all(ENVS);
-        let act = |seen: &[f32], state: &mut DriverState| self.act(seen, state, &mut recorded);
-        play_by(&mut envs, act, DriverState::default(), |_, _, state| {
-            state.steps < STEPS
-        });
-        let observation = envs.task().observation() + self.checkpoint.header.spec.style;
-        let random = noise(RANDOM_ROWS * observation, 7);
-        let mut state = DriverState::default();
-        for _ in 0..2 {
-            self.act(&random, &mut state, &mut recorded);
-        }
-        recorded
+    /// Random observations of so many numbers, `[RANDOM_ROWS][width]`; some are far beyond what policies are
+    /// normalised by.
+    fn random(&self, width: usize) -> Vec<f32> {
+        let normalizes = self.checkpoint.policy.normalizer.is_some();
+        let numbers = noise(RANDOM_ROWS * width, 3).into_iter().enumerate();
+        let far = |(at, number): (usize, f32)| match normalizes && at % 7 == 0 {
+            true => 20.0 * number,
+            false => number,
+        };
+        numbers.map(far).collect()
     }
 
-    /// Lets the run's driver act, and records what it was given and did.
-    fn act(&self, seen: &[f32], state: &mut DriverState, recorded: &mut Recorded) -> Vec<f32> {
-        let body = self.task.body().expect("a body");
+    fn body(&self, body: &BodyEpisodes) -> Recorded {
+        let mut envs = body.open_all(ENVS);
+        let mut recorder = Recorder::new(self, body, &envs);
+        let act = |seen: &[f32], state: &mut DriverState| recorder.act(seen, state);
+        let mut steps = 0;
+        play_by(&mut envs, act, DriverState::default(), |_, _, _| {
+            steps += 1;
+            steps < STEPS
+        });
+        let observation = envs.task().observation() + self.checkpoint.header.spec.style;
+        let random = self.random(observation);
+        let mut state = DriverState::default();
+        for _ in 0..2 {
+            recorder.act(&random, &mut state);
+        }
+        recorder.recorded
+    }
+}
+
+/// A run's driver, and what it was given and did.
+struct Recorder {
+    driver: Box<dyn BodyDriver>,
+    /// Of one body, `[2][drives]`.
+    scale: Vec<f32>,
+    has_latents: bool,
+    steers: bool,
+    recorded: Recorded,
+}
+
+impl Recorder {
+    fn new(run: &UntrainedRun, body: &BodyEpisodes, envs: &CpuHumanoidEnv) -> Recorder {
+        let (model, spec) = (envs.task().model(), envs.spec());
+        let scale = action_scale(model);
+        let (offset, scale) = scale.split_at(model.nu());
+        Recorder {
+            driver: run.task.driver(&run.checkpoint.policy),
+            scale: [&offset[..spec.action], &scale[..spec.action]].concat(),
+            has_latents: body.latents.is_some(),
+            steers: run.task.low_level().is_some(),
+            recorded: Recorded::default(),
+        }
+    }
+
+    fn act(&mut self, seen: &[f32], state: &mut DriverState) -> Vec<f32> {
+        let drives = self.scale.len() / 2;
         let before = state.latents.clone();
         let decides = state.steps.is_multiple_of(STEPS_PER_DECISION);
-        let action = self.task.driver(&self.checkpoint.policy).act(seen, state);
-        let drives = self.drives();
-        let scale = action_scale(&body, drives);
-        let mut input =
-            |name, values: &[f32]| recorded.inputs.entry(name).or_default().extend(values);
+        let action = self.driver.act(seen, state);
+        let Recorded { inputs, outputs } = &mut self.recorded;
+        let mut input = |name, values: &[f32]| inputs.entry(name).or_default().extend(values);
         input("observation", seen);
-        if self.task.low_level().is_some() {
-            let held = if before.is_empty() {
-                vec![0.5; state.latents.len()]
-            } else {
-                before
+        if self.steers {
+            let held = match before.is_empty() {
+                true => vec![0.5; state.latents.len()],
+                false => before,
             };
             input("latent", &held);
-            input(
-                "decide",
-                &vec![f32::from(u8::from(decides)); action.len() / drives],
-            );
-        } else if body.latents.is_some() {
+            let decides = f32::from(u8::from(decides));
+            input("decide", &vec![decides; action.len() / drives]);
+        } else if self.has_latents {
             input("latent", &state.latents);
         }
-        let mut output =
-            |name, values: &[f32]| recorded.outputs.entry(name).or_default().extend(values);
+        let mut output = |name, values: &[f32]| outputs.entry(name).or_default().extend(values);
         output("action", &action);
         let mut targets = vec![0.0; drives];
         for action in action.chunks_exact(drives) {
-            set_targets(action, &scale, &mut targets);
+            set_targets(action, &self.scale, &mut targets);
             output("targets", &targets);
         }
-        if self.task.low_level().is_some() {
+        if self.steers {
             output("next_latent", &state.latents);
         }
         action
     }
-
-    /// Drives of one body.
-    fn drives(&self) -> usize {
-        match self.task.low_level() {
-            Some(low_level) => low_level.policy.action(),
-            None => self.checkpoint.policy.action(),
-        }
-    }
 }
 
-/// Of one body of a model, `[2][drives]`.
-fn action_scale(body: &BodyEpisodes, drives: usize) -> Vec<f32> {
-    let env = body.open(0);
-    let model = env.task().model();
-    let scale = footwork::env::humanoid::action::action_scale(model);
-    let (offset, scale) = scale.split_at(model.nu());
-    [&offset[..drives], &scale[..drives]].concat()
-}
-
-/// Runs of every kind. Files that they need are in the folder.
-pub fn all(folder: &Path) -> Vec<UntrainedRun> {
-    let low_level = folder.join("low_level.ckpt");
-    let body = find("imitate").expect("a task").config(Preset::Fast);
-    let body = find("imitate")
-        .expect("a task")
-        .check(&body)
-        .expect("its dimensions");
-    let rest: Vec<f32> = (0..body.action).map(|at| 0.02 * at as f32 - 0.3).collect();
-    low_level::checkpoint(LowLevel::Ase, body.style, &rest, 4)
-        .save(&low_level)
-        .expect("a file");
-    let mut runs = Vec::new();
-    for task in [
-        "plane",
-        "obstacles",
-        "stand",
-        "imitate",
-        "track",
-        "punch",
-        "joystick",
-        "skills",
-        "box",
-    ] {
-        runs.push(run(task, task, |_| {}));
-    }
+/// A run of every kind, and what our own pass does in it.
+pub static CASES: LazyLock<Vec<(UntrainedRun, Recorded)>> = LazyLock::new(|| {
+    let files = Files::new();
+    let low_level = Some(files.low_level());
+    let mut runs: Vec<UntrainedRun> = REGISTRY.iter().map(|entry| files.run(entry.name)).collect();
     for task in ["punch", "joystick", "box"] {
-        let name = format!("{task}-over-skills");
-        runs.push(run(&name, task, |config| {
-            config.skills = Some(low_level.clone())
+        runs.push(files.changed(task, "-over-skills", |config| {
+            config.skills = low_level.clone()
         }));
     }
-    runs.push(run("plane-normalized", "plane", |config| {
+    runs.push(files.changed("plane", "-normalized", |config| {
         config.ppo.normalize_observations = true;
         config.ppo.network.activation = Activation::Relu;
     }));
-    runs.push(run("obstacles-paper", "obstacles", |config| {
-        let set = |key: &str, value: f64| (key.to_string(), toml::Value::Float(value));
-        config
-            .task
-            .settings
-            .extend([set("map_edge_width", 0.0), set("map_history_s", 0.0)]);
+    runs.push(files.changed("obstacles", "-paper", |config| {
+        for key in ["map_edge_width", "map_history_s"] {
+            config.task.settings.insert(key.into(), 0.0.into());
+        }
         config.ppo.normalize_observations = true;
         config.ppo.network.encoder_hidden = vec![9, 7];
     }));
-    runs.push(run("obstacles-dense-encoder", "obstacles", |config| {
+    runs.push(files.changed("obstacles", "-dense", |config| {
         config.ppo.network.convolutions.clear();
     }));
-    runs.push(run("obstacles-no-encoder", "obstacles", |config| {
+    runs.push(files.changed("obstacles", "-no-encoder", |config| {
         config.ppo.network.convolutions.clear();
         config.ppo.network.encoder_hidden.clear();
     }));
-    runs
-}
-
-/// One run of a task, for a name.
-pub fn one(task: &str) -> UntrainedRun {
-    run(task, task, |_| {})
-}
-
-fn run(name: &str, task: &str, change: impl Fn(&mut Config)) -> UntrainedRun {
-    let entry = find(task).expect("a task");
-    // Whether a low level is steered decides on the preset.
-    let mut probe = entry.config(Preset::Fast);
-    change(&mut probe);
-    let mut config = entry.config_of(Preset::Fast, probe.skills.is_some());
-    config.ppo.network = network(task);
-    change(&mut config);
-    let spec = entry.check(&config).expect("possible choices");
-    let task = (entry.load)(&config).expect("its data").task;
-    let policy = policy(&config, &spec);
-    let header = Header {
-        version: "test".into(),
-        task: entry.name.into(),
-        spec,
-        fingerprint: task.fingerprint(),
-        config: String::new(),
-        steps: 1,
+    let recorded = |run: UntrainedRun| {
+        let recorded = run.recorded();
+        (run, recorded)
     };
-    let checkpoint = Checkpoint {
-        header,
-        policy,
-        sections: Default::default(),
-        path: Default::default(),
-    };
-    UntrainedRun {
-        name: name.to_string(),
-        config,
-        task,
-        checkpoint,
+    runs.into_iter().map(recorded).collect()
+});
+
+/// What runs are made from: a walk of ten seconds.
+pub struct Files(TempDir);
+
+impl Files {
+    pub fn new() -> Files {
+        let files = Files(tempfile::tempdir().expect("a folder"));
+        let (clips, _) = synthetic::perform_walk(1, 10.0, 1.2);
+        bvh::write(&files.path("walk.bvh"), &clips[0]).expect("a file");
+        files
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// A low level that nobody has trained.
+    fn low_level(&self) -> PathBuf {
+        let body = spec(&scenes::humanoid(), 0, 1);
+        let rest: Vec<f32> = (0..body.action).map(|at| 0.02 * at as f32 - 0.3).collect();
+        let checkpoint = low_level::checkpoint(LowLevel::Ase, body.style, &rest, 4);
+        checkpoint
+            .save(&self.path("low_level.ckpt"))
+            .expect("a file");
+        self.path("low_level.ckpt")
+    }
+
+    /// A run of a task.
+    pub fn run(&self, task: &str) -> UntrainedRun {
+        self.changed(task, "", |_| {})
+    }
+
+    fn changed(&self, task: &str, suffix: &str, change: impl Fn(&mut Config)) -> UntrainedRun {
+        let entry = find(task).expect("a task");
+        // Whether a low level is steered decides on the preset.
+        let mut probe = entry.config(Preset::Fast);
+        change(&mut probe);
+        let mut config = entry.config_of(Preset::Fast, probe.skills.is_some());
+        config.data = (task != "stand").then(|| self.path("walk.bvh"));
+        config.ppo.network = network(task);
+        change(&mut config);
+        let spec = entry.check(&config).expect("possible choices");
+        let task = (entry.load)(&config).expect("its data").task;
+        let header = Header {
+            version: "test".into(),
+            task: entry.name.into(),
+            spec,
+            fingerprint: task.fingerprint(),
+            config: String::new(),
+            steps: 1,
+        };
+        let checkpoint = Checkpoint {
+            header,
+            policy: policy(&config, &spec),
+            sections: Default::default(),
+            path: Default::default(),
+        };
+        UntrainedRun {
+            name: format!("{}{suffix}", entry.name),
+            config,
+            task,
+            checkpoint,
+        }
     }
 }
 
@@ -314,13 +354,8 @@ fn policy(config: &Config, spec: &EnvSpec) -> Policy {
     policy
 }
 
-/// Normal numbers, the first ones far out, where observations are clipped.
+/// Normal numbers.
 fn noise(count: usize, seed: u32) -> Vec<f32> {
     let number = |at| gaussian(random4(seed, at as u32, 0, 0x6578_7074));
     (0..count).map(number).collect()
-}
-
-/// A folder for a test.
-pub fn folder() -> TempDir {
-    tempfile::tempdir().expect("a folder")
 }

@@ -1,6 +1,6 @@
 //! What is said of exported policies, against what they are given.
 
-use super::cases::{self, UntrainedRun};
+use super::cases::{CASES, Files, UntrainedRun};
 use footwork::env::humanoid::driver::DriverState;
 use footwork::env::humanoid::task::CpuHumanoidEnv;
 use footwork::env::humanoid::task::play::play;
@@ -43,10 +43,8 @@ fn floats(value: &Value) -> Vec<f32> {
 
 #[test]
 fn every_number_of_every_policy_has_a_meaning() {
-    let folder = cases::folder();
-    for run in cases::all(folder.path()) {
-        let description = description(&run);
-        let recorded = run.recorded();
+    for (run, recorded) in CASES.iter() {
+        let description = description(run);
         let rows = recorded.outputs["action"].len() / shape(&description, "outputs", "action");
         for (side, given) in [("inputs", &recorded.inputs), ("outputs", &recorded.outputs)] {
             let names = ports(&description, side).map(|port| port["name"].as_str().unwrap());
@@ -62,7 +60,7 @@ fn every_number_of_every_policy_has_a_meaning() {
                 let size = shape(&description, side, name);
                 assert_eq!(given[name].len(), rows * size, "{} {name}", run.name);
                 if port["maps"].is_null() {
-                    parts_cover(port, size, &run);
+                    parts_cover(port, size, run);
                 }
             }
         }
@@ -117,11 +115,13 @@ struct Observed {
 impl Observed {
     /// Some steps into an episode.
     fn after_steps(task: &str) -> Observed {
-        let run = cases::one(task);
+        let run = Files::new().run(task);
         let mut env = run.task.body().unwrap().open(3);
         let driver = run.task.driver(&run.checkpoint.policy);
-        play(&mut env, &*driver, DriverState::default(), |_, _, state| {
-            state.steps < 5
+        let mut steps = 0;
+        play(&mut env, &*driver, DriverState::default(), |_, _, _| {
+            steps += 1;
+            steps < 5
         });
         let description = description(&run);
         Observed { description, env }
@@ -233,7 +233,7 @@ fn a_task_s_numbers_are_where_their_parts_say() {
 
 #[test]
 fn maps_are_what_is_said_of_them() {
-    let run = cases::one("obstacles");
+    let run = Files::new().run("obstacles");
     let (description, locomotion) = (description(&run), run.task.locomotion().unwrap());
     let maps = &description["inputs"][1]["maps"];
     let [rows, columns] = ["row_centres_m", "column_centres_m"].map(|key| floats(&maps[key]));

@@ -50,51 +50,23 @@ pub fn actor(
     vector: &str,
     maps: Option<&str>,
 ) -> (String, NetworkDescription) {
-    let spec = policy.observation();
-    let (mut vector, mut maps) = (vector.to_string(), maps.map(str::to_string));
-    if let Some(moments) = &policy.normalizer {
-        let (mean, inv_std) = (moments.mean(), moments.inv_std());
-        let own = [&mean[..spec.vector], &inv_std[..spec.vector]];
-        vector = normalized(
-            graph,
-            &vector,
-            [name, ""],
-            own.map(<[f32]>::to_vec),
-            &[spec.vector],
-        );
-        if let (Some(values), Some(grid @ [height, width, channels])) = (&mut maps, spec.grid) {
-            let own = [&mean[spec.vector..], &inv_std[spec.vector..]];
-            let own = own.map(|own| channels_first(grid).map(|from| own[from]).collect());
-            let shape = [channels, height, width];
-            *values = normalized(graph, values, [name, "maps_"], own, &shape);
-        }
-    }
-    let network = &policy.networks().actor;
-    let (encoder, trunk) = network.layers().split_at(network.encoder_len());
-    let (convolutions, dense) = encoder.split_at(network.conv_layers().len());
+    let (spec, network) = (policy.observation(), &policy.networks().actor);
     let mut stack = Stack {
         graph,
-        parameters: &policy.parameters,
+        name,
+        policy,
         layers: Vec::new(),
     };
-    let (mut value, mut columns) = (vector, Vec::from_iter(0..spec.vector));
-    if let (Some(mut maps), Some(mut grid)) = (maps, spec.grid) {
-        let mut numbers = 0..;
-        let mut layer_name = || format!("{name}.maps.{}", numbers.next().unwrap_or_default());
-        for params in convolutions {
-            maps = stack.convolution(layer_name(), params, &maps);
-            grid = params.layer.outputs();
-        }
-        maps = stack.graph.node("Flatten", &[&maps]);
-        let mut order = Vec::from_iter(channels_first(grid));
-        for params in dense {
-            maps = stack.dense(layer_name(), params, &maps, &order);
-            order = Vec::from_iter(0..params.layer.output_len());
-        }
-        value = stack.graph.concat(&[&value, &maps]);
+    let mut value = stack.normalized_vector(vector);
+    let mut columns = Vec::from_iter(0..spec.vector);
+    if let (Some(maps), Some(grid)) = (maps, spec.grid) {
+        let maps = stack.normalized_maps(maps, grid);
+        let (encoded, order) = stack.encoded(maps, grid);
+        value = stack.graph.concat(&[&value, &encoded]);
         columns.extend(order.into_iter().map(|from| spec.vector + from));
     }
     let map_layers = std::mem::take(&mut stack.layers);
+    let trunk = &network.layers()[network.encoder_len()..];
     for (number, params) in trunk.iter().enumerate() {
         value = stack.dense(format!("{name}.layers.{number}"), params, &value, &columns);
         columns = Vec::from_iter(0..params.layer.output_len());
@@ -114,30 +86,71 @@ pub fn channels_first([height, width, channels]: [usize; 3]) -> impl Iterator<It
         .flat_map(move |channel| (0..height * width).map(move |cell| cell * channels + channel))
 }
 
-/// As [`RunningMeanStd`](crate::nn::RunningMeanStd) does it.
-fn normalized(
-    graph: &mut Graph,
-    value: &str,
-    [name, kind]: [&str; 2],
-    [mean, inv_std]: [Vec<f32>; 2],
-    shape: &[usize],
-) -> String {
-    let mean = graph.parameter(format!("{name}.{kind}mean"), shape, mean);
-    let inv_std = graph.parameter(format!("{name}.{kind}inv_std"), shape, inv_std);
-    let centred = graph.node("Sub", &[value, &mean]);
-    let scaled = graph.node("Mul", &[&centred, &inv_std]);
-    graph.clip(&scaled, CLIP)
-}
-
 /// Layers one upon another.
 struct Stack<'a> {
     graph: &'a mut Graph,
-    /// The flat vector of all parameters.
-    parameters: &'a [f32],
+    /// How the names of parameters begin.
+    name: &'a str,
+    policy: &'a Policy,
     layers: Vec<LayerDescription>,
 }
 
 impl Stack<'_> {
+    fn normalized_vector(&mut self, value: &str) -> String {
+        let width = self.policy.observation().vector;
+        self.normalized(value, "", &[width], &Vec::from_iter(0..width))
+    }
+
+    fn normalized_maps(&mut self, value: &str, grid: [usize; 3]) -> String {
+        let [height, width, channels] = grid;
+        let first = self.policy.observation().vector;
+        let columns = channels_first(grid).map(|from| first + from);
+        let shape = [channels, height, width];
+        self.normalized(value, "maps_", &shape, &Vec::from_iter(columns))
+    }
+
+    /// Some columns of the observation as [`RunningMeanStd`](crate::nn::RunningMeanStd) normalises them.
+    fn normalized(
+        &mut self,
+        value: &str,
+        kind: &str,
+        shape: &[usize],
+        columns: &[usize],
+    ) -> String {
+        let Some(moments) = &self.policy.normalizer else {
+            return value.to_string();
+        };
+        let [mean, inv_std] =
+            [("mean", moments.mean()), ("inv_std", &moments.inv_std())].map(|(moment, numbers)| {
+                let own = columns.iter().map(|&column| numbers[column]).collect();
+                let name = format!("{}.{kind}{moment}", self.name);
+                self.graph.parameter(name, shape, own)
+            });
+        let centred = self.graph.node("Sub", &[value, &mean]);
+        let scaled = self.graph.node("Mul", &[&centred, &inv_std]);
+        self.graph.clip(&scaled, CLIP)
+    }
+
+    /// What the encoder makes of maps, as rows, and in which order footwork has their numbers.
+    fn encoded(&mut self, maps: String, grid: [usize; 3]) -> (String, Vec<usize>) {
+        let network = &self.policy.networks().actor;
+        let encoder = &network.layers()[..network.encoder_len()];
+        let (convolutions, dense) = encoder.split_at(network.conv_layers().len());
+        let begin = format!("{}.maps", self.name);
+        let (mut value, mut grid) = (maps, grid);
+        for (number, params) in convolutions.iter().enumerate() {
+            value = self.convolution(format!("{begin}.{number}"), params, &value);
+            grid = params.layer.outputs();
+        }
+        value = self.graph.node("Flatten", &[&value]);
+        let mut order = Vec::from_iter(channels_first(grid));
+        for (number, params) in (convolutions.len()..).zip(dense) {
+            value = self.dense(format!("{begin}.{number}"), params, &value, &order);
+            order = Vec::from_iter(0..params.layer.output_len());
+        }
+        (value, order)
+    }
+
     /// A dense layer whose inputs are footwork's in the order `columns`.
     fn dense(
         &mut self,
@@ -146,7 +159,10 @@ impl Stack<'_> {
         input: &str,
         columns: &[usize],
     ) -> String {
-        let (weights, filters) = (&self.parameters[params.weights()], params.layer.filters());
+        let (weights, filters) = (
+            &self.policy.parameters[params.weights()],
+            params.layer.filters(),
+        );
         let rows =
             (0..filters).flat_map(|out| columns.iter().map(move |from| from * filters + out));
         let values = rows.map(|at| weights[at]).collect();
@@ -160,7 +176,7 @@ impl Stack<'_> {
 
     fn convolution(&mut self, name: String, params: &LayerParams, input: &str) -> String {
         let layer = &params.layer;
-        let (weights, filters) = (&self.parameters[params.weights()], layer.filters());
+        let (weights, filters) = (&self.policy.parameters[params.weights()], layer.filters());
         let (size, channels) = (layer.size(), layer.inputs()[2]);
         let patch = || channels_first([size, size, channels]);
         let rows = (0..filters).flat_map(|filter| patch().map(move |from| from * filters + filter));
@@ -185,7 +201,7 @@ impl Stack<'_> {
         shape: &[usize],
         weights: Vec<f32>,
     ) -> (String, String) {
-        let biases = self.parameters[params.biases()].to_vec();
+        let biases = self.policy.parameters[params.biases()].to_vec();
         let filters = [biases.len()];
         (
             self.graph
