@@ -36,13 +36,16 @@ impl VectorPart {
     /// A quantity whose components have these names, as it is.
     pub fn new(
         name: impl Into<String>,
-        elements: &[&str],
+        elements: &[impl AsRef<str>],
         [unit, frame]: [&'static str; 2],
         meaning: impl Into<String>,
     ) -> Self {
         VectorPart {
             name: name.into(),
-            elements: elements.iter().map(|element| element.to_string()).collect(),
+            elements: elements
+                .iter()
+                .map(|element| element.as_ref().to_string())
+                .collect(),
             unit,
             frame,
             meaning: meaning.into(),

@@ -2,8 +2,8 @@
 //! low level, which is then in the same graph.
 
 use super::body_description::{
-    BodyPolicyKind, about_body, about_latents, conventions, frames, latent_part, procedure,
-    target_parts,
+    BodyPolicyKind, about_body, about_episode, about_latents, conventions, frames, latent_part,
+    procedure, target_parts,
 };
 use super::description::{PolicyDescription, PortDescription};
 use super::exported::ExportedPolicy;
@@ -24,7 +24,11 @@ use serde_json::json;
 const LEAST: f32 = 1e-6;
 
 /// The policy of a run of a simulated body.
-pub fn export(run: &TrainedRun, body: &BodyEpisodes, about: PolicyDescription) -> ExportedPolicy {
+pub fn export(
+    run: &TrainedRun,
+    body: &BodyEpisodes,
+    mut about: PolicyDescription,
+) -> ExportedPolicy {
     let env = body.open(0);
     let task = env.task();
     let mut export = BodyExport {
@@ -35,16 +39,17 @@ pub fn export(run: &TrainedRun, body: &BodyEpisodes, about: PolicyDescription) -
         outputs: Vec::new(),
         networks: Vec::new(),
     };
-    let mut more = about_body(task);
+    about.add("body", about_body(task.model()));
+    about.add("episode", about_episode(task.rules()));
     let kind = match (run.task.low_level(), &body.latents) {
         (Some(low_level), _) => {
             export.steering(low_level);
-            more.insert("decision_steps", json!(STEPS_PER_DECISION));
+            about.add("decision_steps", json!(STEPS_PER_DECISION));
             BodyPolicyKind::Steering
         }
         (None, Some(draw)) => {
             export.skilled(draw.dim);
-            more.insert("latents", about_latents(draw, body.recordings.as_deref()));
+            about.add("latents", about_latents(draw, body.recordings.as_deref()));
             BodyPolicyKind::Skilled
         }
         (None, None) => {
@@ -59,7 +64,6 @@ pub fn export(run: &TrainedRun, body: &BodyEpisodes, about: PolicyDescription) -
         inputs: export.inputs,
         outputs: export.outputs,
         procedure: procedure(kind),
-        more,
         networks: export.networks,
         ..about
     };

@@ -1,7 +1,7 @@
 //! What is said of the policies of simulated bodies.
 
 use crate::env::description::VectorPart;
-use crate::env::humanoid::task::HumanoidTask;
+use crate::env::humanoid::task::EpisodeRules;
 use crate::env::humanoid::task::describe::{HEADING, agent_joints, axes, own_name};
 use crate::physics::model::{JointKind, Model};
 use crate::physics::motion_library::MotionLibrary;
@@ -50,9 +50,8 @@ pub fn frames() -> BTreeMap<&'static str, &'static str> {
     .into()
 }
 
-/// The body, its joints and its drives.
-pub fn about_body(task: &dyn HumanoidTask) -> BTreeMap<&'static str, Value> {
-    let model = task.model();
+/// A body, its joints and its drives: the first agent of a model.
+pub fn about_body(model: &Model) -> Value {
     let (mut drives, mut joints) = (Vec::new(), Vec::new());
     for joint in agent_joints(model) {
         let first = drives.len();
@@ -80,7 +79,7 @@ pub fn about_body(task: &dyn HumanoidTask) -> BTreeMap<&'static str, Value> {
             "drives": [first, drives.len()],
         }));
     }
-    let body = json!({
+    json!({
         "name": "humanoid",
         "root": own_name(&model.bodies[0].name),
         "joints": joints,
@@ -92,23 +91,24 @@ pub fn about_body(task: &dyn HumanoidTask) -> BTreeMap<&'static str, Value> {
                     velocity as they are at the end of a physics step (implicit), at most the limit either way. The \
                     position of a ball joint's x, y and z is its rotation vector, axis times angle; `footwork export \
                     --format mjcf` writes the model",
-    });
-    let rules = task.rules();
-    let episode = json!({
+    })
+}
+
+/// When an episode ends.
+pub fn about_episode(rules: &EpisodeRules) -> Value {
+    json!({
         "episode_s": rules.episode_s,
         "falls_below_m": {
             "head": rules.min_head_height,
             "pelvis": rules.min_pelvis_height,
             "any body but the feet": rules.min_body_height,
         },
-    });
-    [("body", body), ("episode", episode)].into()
+    })
 }
 
 /// Targets of the drives of the first agent of a model.
 pub fn target_parts(model: &Model) -> VectorPart {
     let elements: Vec<String> = agent_joints(model).flat_map(axes).collect();
-    let elements: Vec<&str> = elements.iter().map(String::as_str).collect();
     VectorPart::new(
         "targets",
         &elements,
@@ -121,7 +121,6 @@ pub fn target_parts(model: &Model) -> VectorPart {
 /// A latent of so many numbers.
 pub fn latent_part(dim: usize) -> VectorPart {
     let elements: Vec<String> = (0..dim).map(|at| at.to_string()).collect();
-    let elements: Vec<&str> = elements.iter().map(String::as_str).collect();
     VectorPart::new("latent", &elements, ["1", "none"], "a unit vector")
 }
 

@@ -102,9 +102,14 @@ impl PolicyDescription {
             outputs: Vec::new(),
             procedure: Vec::new(),
             more: BTreeMap::new(),
-            settings,
+            settings: shortest(settings),
             networks: Vec::new(),
         }
+    }
+
+    /// Says what the kind of policy needs besides.
+    pub fn add(&mut self, name: &'static str, value: Value) {
+        self.more.insert(name, shortest(value));
     }
 
     /// Keys and values of a file's metadata.
@@ -123,6 +128,25 @@ impl PolicyDescription {
             .into_iter()
             .map(|(key, value)| (key.to_string(), value));
         Ok(plain.collect())
+    }
+}
+
+/// A value whose numbers of 32 bits have no more digits than they need.
+fn shortest(value: Value) -> Value {
+    match value {
+        Value::Number(number) => {
+            let wide = number.as_f64().filter(|_| number.is_f64());
+            let narrow = wide.map(|wide| wide as f32);
+            let exact = narrow.filter(|narrow| Some(f64::from(*narrow)) == wide);
+            let digits = exact.and_then(|narrow| narrow.to_string().parse::<f64>().ok());
+            digits.map_or(Value::Number(number), Value::from)
+        }
+        Value::Array(values) => values.into_iter().map(shortest).collect(),
+        Value::Object(values) => {
+            let values = values.into_iter();
+            values.map(|(key, value)| (key, shortest(value))).collect()
+        }
+        other => other,
     }
 }
 

@@ -62,11 +62,7 @@ pub fn export(
     for (port, value) in outputs.iter().zip([action, trajectory]) {
         graph.output(port.name, &port.shape, &value);
     }
-    let more = [
-        ("matching", matching()),
-        ("episode", episode(&locomotion.task)),
-    ];
-    let description = PolicyDescription {
+    let mut description = PolicyDescription {
         conventions: vec![
             "metres, seconds, radians",
             "the world is right-handed with y up; the ground is the plane of x and z at y = 0",
@@ -83,10 +79,11 @@ pub fn export(
         inputs,
         outputs,
         procedure: procedure(&locomotion.task),
-        more: more.into(),
         networks: vec![network],
         ..about
     };
+    description.add("matching", matching());
+    description.add("episode", episode(&locomotion.task));
     ExportedPolicy { graph, description }
 }
 

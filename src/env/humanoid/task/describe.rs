@@ -76,7 +76,6 @@ pub fn joint_part(prefix: &str, joint: &Joint, whose: &str) -> VectorPart {
 /// Velocities of the joints of the first agent of a model.
 pub fn joint_velocities(name: &str, model: &Model, whose: &str) -> VectorPart {
     let elements: Vec<String> = agent_joints(model).flat_map(axes).collect();
-    let elements: Vec<&str> = elements.iter().map(String::as_str).collect();
     let meaning = format!(
         "velocities of the joints{whose}: of a hinge its rate, of a ball the angular velocity of the body that it \
          moves relative to that body's parent, in that body's own frame"
