@@ -1,4 +1,28 @@
 //! A set of clips as motion matching and playback need it, in plain arrays.
+//!
+//! `docs/database.md` documents the file field by field.
+//!
+//! ```
+//! use footwork::motion::{database::Database, normalise::Weights, synthetic};
+//!
+//! let (clips, roles) = synthetic::perform(1, 0.5);
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("motion.footwork");
+//! Database::build(&clips, roles, Weights::PAPER)?.save(&path)?;
+//!
+//! let database = Database::load(&path)?;
+//! let frame = database.candidates[100] as usize;
+//! let [x, z, heading_x, heading_z] = database.path[frame];
+//! let joints = database.skeleton.joints();
+//! let rotations = &database.rotations[frame * joints..][..joints];
+//! let (positions, _) = database.skeleton.world(database.hips[frame], rotations);
+//! let [left, ..] = database.features[frame]; // normalised
+//! let left = left / database.normalisation.scale[0] + database.normalisation.mean[0];
+//! let foot = positions[database.roles.left_foot];
+//! let away = heading_z * (foot.x - x) - heading_x * (foot.z - z);
+//! assert!((left - away).abs() < 1e-5, "the left foot is as far to the left as its feature says");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use super::character_frame::to_local;
 use super::clip::Clip;
