@@ -55,6 +55,8 @@
 //! - `env`: batches of environments behind one trait: motion matching, simulated bodies (`train`);
 //! - `rl`: rollouts, advantages, PPO (`train`);
 //! - `train`: tasks by name, configuration, run directory, checkpoints, evaluation (`train`);
+//! - `runtime`: trained characters, stepped from somebody's own loop (`train`);
+//! - `capi`: the same from C, for game engines (`capi`);
 //! - `view`, `viewer`: scenes and the renderer that draws them; windows (`viewer`);
 //! - `bench`: what each device makes of each stage (`report` and `train`);
 //! - [`report`]: tables; pictures and TensorBoard events (feature `report`);
@@ -71,6 +73,8 @@
 
 #[cfg(all(feature = "report", feature = "train"))]
 pub mod bench;
+#[cfg(feature = "capi")]
+pub mod capi;
 pub mod container;
 #[cfg(feature = "train")]
 pub mod env;
@@ -86,6 +90,8 @@ pub mod playback;
 pub mod report;
 #[cfg(feature = "train")]
 pub mod rl;
+#[cfg(feature = "train")]
+pub mod runtime;
 #[cfg(feature = "train")]
 pub mod train;
 #[cfg(feature = "viewer")]

@@ -101,6 +101,14 @@ impl RunningMeanStd {
         }
     }
 
+    /// Normalises one row by moments in host memory.
+    pub fn normalize_row(&self, row: &mut [f32]) {
+        let (means, variances) = self.moments.host().split_at(self.dim);
+        for ((value, mean), variance) in row.iter_mut().zip(means).zip(variances) {
+            *value = normalized(*value, *mean, inv_std(*variance));
+        }
+    }
+
     /// Moments in host memory of rows that go on behind these, as if only few rows had been seen: the new
     /// columns are soon known.
     pub fn widened(&self, dim: usize) -> RunningMeanStd {
@@ -207,11 +215,21 @@ fn take_in(moments: &mut [f32], rows: &[f32], weight: f64) {
 
 fn normalize(moments: &[f32], rows: &mut [f32]) {
     let (means, variances) = moments.split_at(moments.len() / 2);
-    let std = |variance: &f32| 1.0 / variance.sqrt().max(MIN_STD);
-    let inv_std: Vec<f32> = variances.iter().map(std).collect();
+    let inv_std: Vec<f32> = variances
+        .iter()
+        .map(|&variance| inv_std(variance))
+        .collect();
     for row in rows.chunks_exact_mut(means.len()) {
         for ((value, mean), inv_std) in row.iter_mut().zip(means).zip(&inv_std) {
-            *value = ((*value - mean) * inv_std).clamp(-CLIP, CLIP);
+            *value = normalized(*value, *mean, *inv_std);
         }
     }
+}
+
+fn inv_std(variance: f32) -> f32 {
+    1.0 / variance.sqrt().max(MIN_STD)
+}
+
+fn normalized(value: f32, mean: f32, inv_std: f32) -> f32 {
+    ((value - mean) * inv_std).clamp(-CLIP, CLIP)
 }
