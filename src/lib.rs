@@ -64,7 +64,7 @@
 //!
 //! # Features
 //!
-//! All of `cli`, `gpu`, `report`, `train` and `viewer` are on by default. Without any of them the crate
+//! All of `capi`, `cli`, `gpu`, `report`, `train` and `viewer` are on by default. Without any of them the crate
 //! is motion matching and physics on the CPU, without burn, wgpu or a command line. `train,cli` trains on
 //! the CPU. No real GPU has been measured yet: the shaders are tested on Mesa's lavapipe.
 
