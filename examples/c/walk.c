@@ -35,32 +35,40 @@ static double microseconds(void) {
     return 1e6 * (double)now.tv_sec + 1e-3 * (double)now.tv_nsec;
 }
 
-/* Microseconds of a frame's step and pose: those in which the policy decides, and the others. */
-typedef struct Cost {
-    double decisions, others;
-    int decided, other;
-} Cost;
+/* Microseconds that frames took. */
+typedef struct Times {
+    double all[TARGET_COUNT * PATIENCE];
+    size_t count;
+} Times;
+
+static int ascending(const void *a, const void *b) {
+    double first = *(const double *)a, second = *(const double *)b;
+    return (first > second) - (first < second);
+}
+
+/* Half of the frames took no longer. */
+static double median(Times *times) {
+    qsort(times->all, times->count, sizeof times->all[0], ascending);
+    return times->count > 0 ? times->all[times->count / 2] : 0.0;
+}
+
+/* Frames in which the policy decides, and the others. */
+static Times decisions, others;
 
 /* Walks to a target. Returns the time it took, in seconds, or -1 for never. */
 static double walk(FootworkCharacters characters, const float target[2], float radius, float *pose,
-                   uint32_t joints, Cost *cost) {
+                   uint32_t joints) {
     check(footwork_characters_set_target(characters, 0, target[0], target[1]));
     for (int frame = 1; frame <= PATIENCE; frame++) {
-        FootworkCharacterState before, state;
-        check(footwork_characters_state(characters, 0, &before));
+        FootworkCharacterState state;
         double begin = microseconds();
         check(footwork_characters_step(characters, 0));
         check(footwork_characters_local_pose(characters, 0, pose, pose + 3, 4 * (size_t)joints));
         double spent = microseconds() - begin;
         check(footwork_characters_state(characters, 0, &state));
         /* A decision's first frame follows the frame that was found. */
-        if (state.frame == state.matched + 1) {
-            cost->decisions += spent;
-            cost->decided++;
-        } else {
-            cost->others += spent;
-            cost->other++;
-        }
+        Times *times = state.frame == state.matched + 1 ? &decisions : &others;
+        times->all[times->count++] = spent;
         double away = hypot(target[0] - state.position[0], target[1] - state.position[1]);
         if (frame % 30 == 0 || away <= radius) {
             printf("%5.2f s  at %6.2f, %6.2f m  hips %.2f m high  %5.2f m to go\n", frame / 30.0,
@@ -102,17 +110,15 @@ int main(int argc, char **argv) {
     if (pose == NULL) {
         return 1;
     }
-    Cost cost = {0};
     size_t arrived = 0;
     for (size_t i = 0; i < TARGET_COUNT; i++) {
         printf("to %.0f, %.0f\n", TARGETS[i][0], TARGETS[i][1]);
-        double time = walk(characters, TARGETS[i], learned.success_radius, pose, motion.joints, &cost);
+        double time = walk(characters, TARGETS[i], learned.success_radius, pose, motion.joints);
         arrived += time >= 0.0;
     }
     printf("%zu of %zu targets reached\n", arrived, TARGET_COUNT);
-    printf("a frame with a decision takes %.1f microseconds, another %.1f\n",
-           cost.decisions / (cost.decided > 0 ? cost.decided : 1),
-           cost.others / (cost.other > 0 ? cost.other : 1));
+    printf("half of the frames with a decision take at most %.1f microseconds, of the others %.1f\n",
+           median(&decisions), median(&others));
     free(pose);
     check(footwork_characters_close(characters));
     check(footwork_policy_close(policy));

@@ -3,5 +3,4 @@
 
 mod allocations;
 mod characters;
-mod header;
 mod place;
