@@ -83,3 +83,17 @@ pub extern "C" fn footwork_version() -> *const c_char {
     const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
     VERSION.as_ptr().cast()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ffi::CStr;
+
+    #[test]
+    fn panics_become_a_status_and_a_text() {
+        let status = guard(|| panic!("number {}", 7));
+        // SAFETY: it is this thread's text, and no other failure follows.
+        let text = unsafe { CStr::from_ptr(footwork_last_error()) };
+        assert_eq!((status, text), (FootworkStatus::Internal, c"number 7"));
+    }
+}
