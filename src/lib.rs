@@ -55,6 +55,8 @@
 //! - `env`: batches of environments behind one trait: motion matching, simulated bodies (`train`);
 //! - `rl`: rollouts, advantages, PPO (`train`);
 //! - `train`: tasks by name, configuration, run directory, checkpoints, evaluation (`train`);
+//! - `runtime`: trained characters, stepped from somebody's own loop (`train`);
+//! - `capi`: the same from C, for game engines (`capi`);
 //! - `view`, `viewer`: scenes and the renderer that draws them; windows (`viewer`);
 //! - `export`: policies, motion and models in files of other programs (`export`);
 //! - `bench`: what each device makes of each stage (`report` and `train`);
@@ -63,7 +65,7 @@
 //!
 //! # Features
 //!
-//! All of `cli`, `export`, `gpu`, `report`, `train` and `viewer` are on by default. Without any of them the crate
+//! All of `capi`, `cli`, `export`, `gpu`, `report`, `train` and `viewer` are on by default. Without any of them the crate
 //! is motion matching and physics on the CPU, without burn, wgpu or a command line. `train,cli` trains on
 //! the CPU. No real GPU has been measured yet: the shaders are tested on Mesa's lavapipe.
 
@@ -72,6 +74,8 @@
 
 #[cfg(all(feature = "report", feature = "train"))]
 pub mod bench;
+#[cfg(feature = "capi")]
+pub mod capi;
 pub mod container;
 #[cfg(feature = "train")]
 pub mod env;
@@ -89,6 +93,8 @@ pub mod playback;
 pub mod report;
 #[cfg(feature = "train")]
 pub mod rl;
+#[cfg(feature = "train")]
+pub mod runtime;
 #[cfg(feature = "train")]
 pub mod train;
 #[cfg(feature = "viewer")]

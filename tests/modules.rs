@@ -8,11 +8,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Top-level modules from the roof to the ground; those of a line do not know each other.
-const ORDER: [&[&str]; 12] = [
-    &["cli"],
+const ORDER: [&[&str]; 13] = [
+    &["cli", "capi"],
     &["viewer"],
     &["bench", "export"],
     &["view"],
+    &["runtime"],
     &["train"],
     &["rl"],
     &["env"],

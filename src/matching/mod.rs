@@ -37,4 +37,4 @@ mod tree;
 
 pub use index::{DEFAULT_TABLE_BYTES, Index};
 pub use motion_matcher::MotionMatcher;
-pub use search::Nearest;
+pub use search::{Nearest, SearchScratch};

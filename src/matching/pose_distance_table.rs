@@ -204,6 +204,21 @@ impl PoseDistanceTable {
         }
         gathered
     }
+
+    /// The codes of one frame, where they are stored; those of the regions are put into `by_region`.
+    #[inline(always)]
+    pub fn codes<'a>(&'a self, frame: u32, by_region: &'a mut Vec<u8>) -> PoseCodes<'a> {
+        let groups = self.layout.groups;
+        let first = self.block_of[frame as usize] as usize * groups;
+        let by_group = &self.by_group[first..][..groups];
+        by_region.clear();
+        by_region.extend(by_group.chunks(LANES).map(min_code));
+        PoseCodes {
+            by_region,
+            by_group,
+            by_leaf: self.by_leaf.get(first..first + groups),
+        }
+    }
 }
 
 /// Codes of some frames' least distances to the poses of all leaves.

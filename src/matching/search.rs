@@ -35,12 +35,29 @@ impl Nearest {
     };
 }
 
+/// The memory of a search of one query at a time, which a next one uses again.
+#[derive(Clone, Debug, Default)]
+pub struct SearchScratch {
+    /// Codes of the regions.
+    by_region: Vec<u8>,
+    /// Bounds of the regions.
+    bounds: Vec<f32>,
+}
+
 impl Index {
     /// Nearest candidate of one query, whose pose half is that of `frame`; of equals the lowest.
     pub fn nearest(&self, frame: u32, query: &[f32; ROW_STRIDE]) -> Nearest {
-        let mut found = [Nearest::NONE];
-        search(self, &[frame], &[*query], &mut found);
-        found[0]
+        self.nearest_with(frame, query, &mut SearchScratch::default())
+    }
+
+    /// [`Index::nearest`] in memory that is there already: from the second search on nothing is allocated.
+    pub fn nearest_with(
+        &self,
+        frame: u32,
+        query: &[f32; ROW_STRIDE],
+        scratch: &mut SearchScratch,
+    ) -> Nearest {
+        search_one(self, frame, query, scratch)
     }
 
     /// Nearest candidate of every query, on all cores.
@@ -58,6 +75,10 @@ impl Index {
             .zip(queries.par_chunks(task))
             .zip(found.par_chunks_mut(task))
             .for_each(|((frames, queries), found)| {
+                if let ([frame], [query]) = (frames, queries) {
+                    found[0] = self.nearest(*frame, query).index;
+                    return;
+                }
                 let mut nearest = vec![Nearest::NONE; found.len()];
                 search(self, frames, queries, &mut nearest);
                 for (found, nearest) in found.iter_mut().zip(nearest) {
@@ -116,14 +137,9 @@ impl Best {
     }
 }
 
-#[multiversion(targets(
-    "x86_64+avx512f+avx512vl+avx512dq+avx512bw+fma",
-    "x86_64+avx2+fma",
-    "aarch64+neon"
-))]
-fn search(index: &Index, frames: &[u32], queries: &[[f32; ROW_STRIDE]], found: &mut [Nearest]) {
-    let poses = index.poses.gather(frames);
-    let state = |(at, query)| {
+impl<'a> QueryState<'a> {
+    #[inline(always)]
+    fn new(index: &Index, query: &[f32; ROW_STRIDE], poses: PoseCodes<'a>) -> Self {
         let trajectory = index.axes.project(query);
         let out_of_grid = index.tree.grid.out_of_grid(&trajectory);
         QueryState {
@@ -136,27 +152,35 @@ fn search(index: &Index, frames: &[u32], queries: &[[f32; ROW_STRIDE]], found: &
             ),
             is_outside: out_of_grid.squared > 0.0,
             trajectory,
-            poses: poses.row(at),
+            poses,
             out_of_grid,
         }
-    };
-    let mut states: Vec<QueryState> = queries.iter().enumerate().map(state).collect();
-    let (bounds, nearest_regions) = region_bounds(index, &states);
-    for (state, nearest) in states.iter_mut().zip(nearest_regions) {
+    }
+}
+
+#[multiversion(targets(
+    "x86_64+avx512f+avx512vl+avx512dq+avx512bw+fma",
+    "x86_64+avx2+fma",
+    "aarch64+neon"
+))]
+fn search(index: &Index, frames: &[u32], queries: &[[f32; ROW_STRIDE]], found: &mut [Nearest]) {
+    let poses = index.poses.gather(frames);
+    let queries = queries.iter().enumerate();
+    let states = queries.map(|(at, query)| QueryState::new(index, query, poses.row(at)));
+    let mut states: Vec<QueryState> = states.collect();
+    let mut bounds = Vec::new();
+    let mut nearest = vec![LeastBounds::NONE; states.len()];
+    region_bounds(index, &states, &mut bounds, &mut nearest);
+    for (state, nearest) in states.iter_mut().zip(nearest) {
         seed(index, nearest, state);
     }
     let regions = bounds.chunks_exact(states.len());
     let regions = regions.take(index.tree.group_boxes.len()).enumerate();
-    if let [state] = &mut states[..] {
-        // Nothing to share, and each step would wait for the one before.
-        regions.for_each(|(region, bounds)| search_region(index, region, bounds[0], state));
-    } else {
-        let mut steps = Steps::new(states.len());
-        for (region, bounds) in regions {
-            steps.groups(index, region, bounds, &states);
-            for lane in 0..LANES {
-                steps.leaves(index, region, lane, &mut states);
-            }
+    let mut steps = Steps::new(states.len());
+    for (region, bounds) in regions {
+        steps.groups(index, region, bounds, &states);
+        for lane in 0..LANES {
+            steps.leaves(index, region, lane, &mut states);
         }
     }
     for (found, state) in found.iter_mut().zip(states) {
@@ -164,16 +188,46 @@ fn search(index: &Index, frames: &[u32], queries: &[[f32; ROW_STRIDE]], found: &
     }
 }
 
-/// Lower bounds of the squared distances to all regions, `[regions][queries]`, and the nearest regions of
-/// each query.
+/// A query alone has nothing to share, and each step would wait for the one before: region by region.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512vl+avx512dq+avx512bw+fma",
+    "x86_64+avx2+fma",
+    "aarch64+neon"
+))]
+fn search_one(
+    index: &Index,
+    frame: u32,
+    query: &[f32; ROW_STRIDE],
+    scratch: &mut SearchScratch,
+) -> Nearest {
+    let poses = index.poses.codes(frame, &mut scratch.by_region);
+    let mut states = [QueryState::new(index, query, poses)];
+    let mut nearest = [LeastBounds::NONE];
+    region_bounds(index, &states, &mut scratch.bounds, &mut nearest);
+    let ([state], [nearest]) = (&mut states, nearest);
+    seed(index, nearest, state);
+    let regions = scratch.bounds.iter().take(index.tree.group_boxes.len());
+    for (region, &bound) in regions.enumerate() {
+        search_region(index, region, bound, state);
+    }
+    state.best.nearest
+}
+
+/// Puts lower bounds of the squared distances to all regions, `[regions][queries]`, into `all`, and offers
+/// each query the nearest regions.
 #[inline(always)]
-fn region_bounds(index: &Index, states: &[QueryState]) -> (Vec<f32>, Vec<LeastBounds>) {
+fn region_bounds(
+    index: &Index,
+    states: &[QueryState],
+    all: &mut Vec<f32>,
+    nearest: &mut [LeastBounds],
+) {
     let count = states.len();
-    let mut nearest = vec![LeastBounds::NONE; count];
-    let mut all = vec![0.0; index.tree.region_boxes.len() * LANES * count];
+    all.clear();
+    all.resize(index.tree.region_boxes.len() * LANES * count, 0.0);
     for (at, boxes) in index.tree.region_boxes.iter().enumerate() {
         let all = &mut all[at * LANES * count..][..LANES * count];
-        for (i, (state, nearest)) in states.iter().zip(&mut nearest).enumerate() {
+        for (i, (state, nearest)) in states.iter().zip(&mut *nearest).enumerate() {
             let poses = index.poses.squared_distances(state.poses.to_regions(at));
             let bounds = box_distances(boxes, &state.trajectory, poses);
             nearest.offer(&bounds, at * LANES);
@@ -182,7 +236,6 @@ fn region_bounds(index: &Index, states: &[QueryState]) -> (Vec<f32>, Vec<LeastBo
             }
         }
     }
-    (all, nearest)
 }
 
 /// Compares the nearest leaf of each of the nearest groups of the nearest regions, for a first result.

@@ -54,8 +54,19 @@ impl Skeleton {
     /// Forward kinematics of one frame: world positions (m) and rotations of every joint.
     /// `rotations` are local, one a joint; `root` is the root joint's world position.
     pub fn world(&self, root: Vec3, rotations: &[Quat]) -> (Vec<Vec3>, Vec<Quat>) {
-        let mut positions = Vec::with_capacity(self.joints());
-        let mut world: Vec<Quat> = Vec::with_capacity(self.joints());
+        let mut world = JointTransforms::default();
+        self.world_into(root, rotations, &mut world);
+        (world.positions, world.rotations)
+    }
+
+    /// [`Skeleton::world`] in memory that is there already.
+    pub fn world_into(&self, root: Vec3, rotations: &[Quat], world: &mut JointTransforms) {
+        let JointTransforms {
+            positions,
+            rotations: world,
+        } = world;
+        positions.clear();
+        world.clear();
         for (joint, &local) in rotations.iter().enumerate().take(self.joints()) {
             match self.parents[joint] {
                 None => {
@@ -68,6 +79,14 @@ impl Skeleton {
                 }
             }
         }
-        (positions, world)
     }
+}
+
+/// World positions (m) and rotations of every joint.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JointTransforms {
+    /// Positions, m.
+    pub positions: Vec<Vec3>,
+    /// Rotations.
+    pub rotations: Vec<Quat>,
 }

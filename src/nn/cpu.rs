@@ -112,6 +112,22 @@ pub fn forward(network: &Network, flat: &[f32], observations: &[f32], out: &mut 
     });
 }
 
+/// The memory of evaluations of a network for one observation at a time, which a next one uses again.
+#[derive(Clone, Default)]
+pub struct ForwardScratch(Pass);
+
+/// The outputs for one observation, on this core alone. From the second evaluation of a network on nothing is
+/// allocated.
+pub fn forward_one<'a>(
+    network: &Network,
+    flat: &[f32],
+    observation: &[f32],
+    scratch: &'a mut ForwardScratch,
+) -> &'a [f32] {
+    scratch.0.forward(network, flat, &[observation]);
+    &scratch.0.inputs[network.layers().len()]
+}
+
 fn add(sums: &mut [f32], values: &[f32]) {
     sums.iter_mut()
         .zip(values)
@@ -240,11 +256,14 @@ fn sum_gradients(network: &Network, splits: &[Split], gradient: &mut [f32]) {
 }
 
 /// What some rows left on their way through a network.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Pass {
     /// Activations of every layer, `[rows][..]`; the outputs last.
     inputs: Vec<Vec<f32>>,
     rows: usize,
+    /// Memory for the layers' patches, and for what joins maps and vectors.
+    offsets: Vec<usize>,
+    joined: Vec<f32>,
 }
 
 impl Pass {
@@ -262,9 +281,11 @@ impl Pass {
         for (number, params) in network.layers().iter().enumerate() {
             let (inputs, outputs) = self.inputs.split_at_mut(number + 1);
             let output = &mut outputs[0];
-            layers::forward(params, flat, &inputs[number], rows.len(), output);
+            let offsets = &mut self.offsets;
+            layers::forward(params, flat, &inputs[number], rows.len(), offsets, output);
             if number + 1 == encoder {
-                *output = join(rows, spec.vector, output);
+                join(rows, spec.vector, output, &mut self.joined);
+                std::mem::swap(output, &mut self.joined);
             }
         }
     }
@@ -327,13 +348,13 @@ impl Pass {
     }
 }
 
-/// The vector of every observation, and what an encoder made of its maps.
-fn join(rows: &[&[f32]], vector: usize, encoded: &[f32]) -> Vec<f32> {
+/// Puts the vector of every observation, and what an encoder made of its maps, in the place of `joined`.
+fn join(rows: &[&[f32]], vector: usize, encoded: &[f32], joined: &mut Vec<f32>) {
     let width = encoded.len() / rows.len().max(1);
-    let mut joined = Vec::with_capacity(rows.len() * (vector + width));
+    joined.clear();
+    joined.reserve(rows.len() * (vector + width));
     for (row, encoded) in rows.iter().zip(encoded.chunks_exact(width)) {
         joined.extend_from_slice(&row[..vector]);
         joined.extend_from_slice(encoded);
     }
-    joined
 }

@@ -139,8 +139,16 @@ impl Layer {
 
     /// Index in the input of the patch of every output pixel: `[samples][height][width]`.
     pub(super) fn patch_offsets(&self, samples: usize) -> Vec<usize> {
+        let mut offsets = Vec::new();
+        self.patch_offsets_into(samples, &mut offsets);
+        offsets
+    }
+
+    /// [`Layer::patch_offsets`] in memory that is there already.
+    pub(super) fn patch_offsets_into(&self, samples: usize, offsets: &mut Vec<usize>) {
         let [rows, columns, _] = self.outputs;
-        let mut offsets = Vec::with_capacity(samples * rows * columns);
+        offsets.clear();
+        offsets.reserve(samples * rows * columns);
         for sample in 0..samples {
             for row in 0..rows {
                 let first = sample * self.input_len() + row * self.stride() * self.row_stride();
@@ -149,7 +157,6 @@ impl Layer {
                     .extend(columns.map(|column| first + column * self.stride() * self.inputs[2]));
             }
         }
-        offsets
     }
 
     /// Multiplications and additions for one sample.

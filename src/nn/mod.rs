@@ -26,5 +26,5 @@ pub use engine::Engine;
 pub use extent::{EngineSize, Rows};
 pub use network::{Network, NetworkConfig, NetworkError};
 pub use objective::Objective;
-pub use policy::Policy;
+pub use policy::{Policy, PolicyScratch};
 pub use running_mean_std::RunningMeanStd;

@@ -81,6 +81,19 @@ impl Policy {
         out
     }
 
+    /// The mean action for one observation, on this core alone. From the second one on nothing is allocated.
+    pub fn mean_one<'a>(&self, observation: &[f32], scratch: &'a mut PolicyScratch) -> &'a [f32] {
+        let PolicyScratch { normalized, pass } = scratch;
+        let actor = &self.networks.actor;
+        let Some(normalizer) = &self.normalizer else {
+            return cpu::forward_one(actor, &self.parameters, observation, pass);
+        };
+        normalized.clear();
+        normalized.extend_from_slice(observation);
+        normalizer.normalize_row(normalized);
+        cpu::forward_one(actor, &self.parameters, normalized, pass)
+    }
+
     /// Saves everything.
     ///
     /// # Errors
@@ -126,6 +139,13 @@ impl Policy {
         }
         Ok(policy)
     }
+}
+
+/// The memory of [`Policy::mean_one`], which a next evaluation of the same policy uses again.
+#[derive(Clone, Default)]
+pub struct PolicyScratch {
+    normalized: Vec<f32>,
+    pass: cpu::ForwardScratch,
 }
 
 /// The largest dimension that a file may ask for.

@@ -101,6 +101,14 @@ impl RunningMeanStd {
         }
     }
 
+    /// Normalises one row by moments in host memory.
+    pub fn normalize_row(&self, row: &mut [f32]) {
+        let (means, variances) = self.moments.host().split_at(self.dim);
+        for ((value, mean), variance) in row.iter_mut().zip(means).zip(variances) {
+            *value = normalized(*value, *mean, inv_std(*variance));
+        }
+    }
+
     /// Moments in host memory of rows that go on behind these, as if only few rows had been seen: the new
     /// columns are soon known.
     pub fn widened(&self, dim: usize) -> RunningMeanStd {

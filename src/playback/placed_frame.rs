@@ -3,7 +3,7 @@
 use super::pose::CharacterPose;
 use crate::motion::character_frame::{to_local, to_world};
 use crate::motion::database::Database;
-use crate::motion::features::TRAJECTORY_OFFSETS;
+use crate::motion::features::{POSE_DIM, ROW_STRIDE, TRAJECTORY_OFFSETS};
 use glam::{Quat, Vec3};
 
 /// A database frame and its character frame in the world: everything that motion
@@ -37,6 +37,30 @@ impl PlacedFrame {
         }
     }
 
+    /// The trajectory that a normalised query requests from here, in the world: x, z (m), heading x, heading z.
+    pub fn requested(
+        self,
+        database: &Database,
+        query: &[f32; ROW_STRIDE],
+    ) -> [[f32; 4]; TRAJECTORY_OFFSETS.len()] {
+        let normal = &database.normalisation;
+        let value = |i: usize| query[i] / normal.scale[i] + normal.mean[i];
+        std::array::from_fn(|k| {
+            let [x, z, hx, hz] = std::array::from_fn(|i| value(POSE_DIM + 4 * k + i));
+            let (moved, turned) = (
+                to_world([x, z], self.heading),
+                to_world([hx, hz], self.heading),
+            );
+            let length = turned[0].hypot(turned[1]).max(1e-6);
+            [
+                self.at[0] + moved[0],
+                self.at[1] + moved[1],
+                turned[0] / length,
+                turned[1] / length,
+            ]
+        })
+    }
+
     /// The recorded trajectory at the offsets of the trajectory feature: x, z (m), heading x, heading z.
     pub fn path(self, database: &Database) -> [[f32; 4]; TRAJECTORY_OFFSETS.len()] {
         TRAJECTORY_OFFSETS.map(|ahead| {
@@ -47,17 +71,46 @@ impl PlacedFrame {
 
     /// The recorded pose, placed here.
     pub fn pose(self, database: &Database) -> CharacterPose {
+        let mut pose = CharacterPose::default();
+        self.pose_into(database, &mut pose);
+        pose
+    }
+
+    /// [`PlacedFrame::pose`] in memory that is there already.
+    pub fn pose_into(self, database: &Database, pose: &mut CharacterPose) {
+        let root = self.root(database);
+        pose.root = root.position;
+        pose.rotations.clear();
+        pose.rotations
+            .extend_from_slice(recorded(database, self.frame));
+        pose.rotations[0] = root.rotation;
+    }
+
+    /// The recorded root, placed here.
+    pub fn root(self, database: &Database) -> PlacedRoot {
         let [x, z, hx, hz] = database.path[self.frame];
         let rotation = Quat::from_rotation_y(yaw(self.heading) - yaw([hx, hz]));
         let ground = Vec3::new(self.at[0], 0.0, self.at[1]);
-        let joints = database.skeleton.joints();
-        let mut rotations = database.rotations[self.frame * joints..][..joints].to_vec();
-        rotations[0] = (rotation * rotations[0]).normalize();
-        CharacterPose {
-            root: ground + rotation * (database.hips[self.frame] - Vec3::new(x, 0.0, z)),
-            rotations,
+        PlacedRoot {
+            position: ground + rotation * (database.hips[self.frame] - Vec3::new(x, 0.0, z)),
+            rotation: (rotation * recorded(database, self.frame)[0]).normalize(),
         }
     }
+}
+
+/// The root joint in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlacedRoot {
+    /// Position, m.
+    pub position: Vec3,
+    /// Rotation.
+    pub rotation: Quat,
+}
+
+/// The recorded rotations of a frame.
+pub fn recorded(database: &Database, frame: usize) -> &[Quat] {
+    let joints = database.skeleton.joints();
+    &database.rotations[frame * joints..][..joints]
 }
 
 /// The angle about the vertical that takes +z to `heading`.

@@ -9,6 +9,7 @@ use super::spring::Spring;
 use super::stitch::{Stitch, Stitching};
 use super::two_bone_ik;
 use crate::motion::database::Database;
+use crate::motion::skeleton::JointTransforms;
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -36,9 +37,12 @@ impl Feet {
     }
 
     /// Both soles of a pose, left first.
-    pub fn soles(&self, database: &Database, pose: &CharacterPose) -> [SolePoints; 2] {
-        let (positions, rotations) = pose.world(&database.skeleton);
-        [0, 1].map(|side| SolePoints::of(&self.legs[side], &positions, &rotations))
+    pub fn soles(&self, world: &JointTransforms) -> [SolePoints; 2] {
+        let JointTransforms {
+            positions,
+            rotations,
+        } = world;
+        [0, 1].map(|side| SolePoints::of(&self.legs[side], positions, rotations))
     }
 }
 
@@ -75,13 +79,21 @@ pub struct Player {
     locks: [FootLock; 2],
     /// Distance by which the hips are lowered, m.
     hips: Spring,
+    pose: CharacterPose,
+    /// The pose's joints.
+    world: JointTransforms,
 }
 
 impl Player {
     /// A character that begins after `shown`.
     pub fn new(database: Arc<Database>, feet: Arc<Feet>, style: Style, shown: PlacedFrame) -> Self {
         let stitch = Stitch::new(style.stitching, database.skeleton.joints());
+        let pose = shown.pose(&database);
+        let mut world = JointTransforms::default();
+        pose.world_into(&database.skeleton, &mut world);
         Player {
+            pose,
+            world,
             database,
             feet,
             style,
@@ -93,30 +105,51 @@ impl Player {
     }
 
     /// The pose of the next frame: of the same clip, or of wherever a match has jumped to.
-    pub fn next(&mut self, shown: PlacedFrame) -> CharacterPose {
+    pub fn next(&mut self, shown: PlacedFrame) -> &CharacterPose {
         self.stitch.advance();
         if shown.frame != self.shown.frame + 1 {
             self.stitch.begin(&self.database, self.shown, shown);
         }
         self.shown = shown;
-        let mut pose = shown.pose(&self.database);
-        let recorded = self.feet.soles(&self.database, &pose);
-        self.stitch.apply(&mut pose);
+        shown.pose_into(&self.database, &mut self.pose);
+        self.transform();
+        let recorded = self.feet.soles(&self.world);
+        self.stitch.apply(&mut self.pose);
+        self.transform();
         if self.style.foot_locking {
-            self.lock(&mut pose, &recorded);
+            self.lock(&recorded);
+            self.transform();
         }
-        pose
+        &self.pose
+    }
+
+    /// The last pose.
+    pub fn pose(&self) -> &CharacterPose {
+        &self.pose
+    }
+
+    /// The joints of the last pose in the world.
+    pub fn world(&self) -> &JointTransforms {
+        &self.world
+    }
+
+    fn transform(&mut self) {
+        let skeleton = &self.database.skeleton;
+        self.pose.world_into(skeleton, &mut self.world);
     }
 
     /// Holds the standing feet, and keeps both above the ground; where a leg is too short for that, the
     /// hips come down.
-    fn lock(&mut self, pose: &mut CharacterPose, recorded: &[SolePoints; 2]) {
-        let skeleton = &self.database.skeleton;
-        let (positions, rotations) = pose.world(skeleton);
+    fn lock(&mut self, recorded: &[SolePoints; 2]) {
+        let (skeleton, pose) = (&self.database.skeleton, &mut self.pose);
+        let JointTransforms {
+            positions,
+            rotations,
+        } = &self.world;
         let mut targets = [Vec3::ZERO; 2];
         let mut shortfall = 0.0_f32;
         for (side, leg) in self.feet.legs.iter().enumerate() {
-            let sole = SolePoints::of(leg, &positions, &rotations);
+            let sole = SolePoints::of(leg, positions, rotations);
             let contact = self.feet.contacts[self.shown.frame][side];
             let held = self.locks[side].next(&sole, &recorded[side], contact);
             let sunk = -held.y - sole.heel.y.min(sole.toe.y);
@@ -136,7 +169,7 @@ impl Player {
         };
         pose.root.y -= self.hips.follow(shortfall, rate);
         for (leg, target) in self.feet.legs.iter().zip(targets) {
-            two_bone_ik::solve(skeleton, pose, leg, target);
+            two_bone_ik::solve(skeleton, pose, leg, target, &mut self.world);
         }
     }
 }

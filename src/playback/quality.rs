@@ -5,6 +5,7 @@ use super::placed_frame::PlacedFrame;
 use super::player::{Feet, Player, Style};
 use crate::motion::RATE;
 use crate::motion::database::Database;
+use crate::motion::skeleton::JointTransforms;
 use glam::Vec3;
 use serde::Serialize;
 use std::sync::Arc;
@@ -95,12 +96,16 @@ fn play(
     episode: &[PlacedFrame],
 ) -> Vec<Frame> {
     let mut player = Player::new(database.clone(), feet.clone(), style, episode[0]);
+    let mut recorded = JointTransforms::default();
     episode
         .windows(2)
         .map(|pair| {
-            let pose = player.next(pair[1]);
-            let soles = feet.soles(database, &pose);
-            let recorded = feet.soles(database, &pair[1].pose(database));
+            player.next(pair[1]);
+            let soles = feet.soles(player.world());
+            pair[1]
+                .pose(database)
+                .world_into(&database.skeleton, &mut recorded);
+            let recorded = feet.soles(&recorded);
             let contacts = [0, 1].map(|side| {
                 let contact = feet.contacts[pair[1].frame][side];
                 let heights = [soles[side], recorded[side]].map(|sole| sole.point(contact));
@@ -110,7 +115,7 @@ fn play(
                 }
             });
             Frame {
-                joints: pose.world(&database.skeleton).0,
+                joints: player.world().positions.clone(),
                 soles,
                 contacts,
                 jumped: pair[1].frame != pair[0].frame + 1,

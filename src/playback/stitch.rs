@@ -1,7 +1,7 @@
 //! Stitching: hides the jump from one frame of the database to another.
 
 use super::inertialize::InertializedOffset;
-use super::placed_frame::PlacedFrame;
+use super::placed_frame::{PlacedFrame, recorded};
 use super::pose::CharacterPose;
 use crate::motion::database::Database;
 use glam::{Quat, Vec3};
@@ -54,29 +54,35 @@ impl Stitch {
         if self.kind == Stitching::None {
             return;
         }
-        // The poses on from `from` and those around `to`: a frame before, at and after the jump.
+        // The frames on from `from` and those around `to`: a frame before, at and after the jump.
         let pairs = [0, 1, 2].map(|ahead: isize| {
-            let mut old = from.on(database, ahead).pose(database);
-            self.add(&mut old, self.age + ahead as f32 - 1.0);
-            (old, to.on(database, ahead - 1).pose(database))
+            let (old, new) = (from.on(database, ahead), to.on(database, ahead - 1));
+            let roots = [old.root(database), new.root(database)];
+            let rotations = [old.frame, new.frame].map(|frame| recorded(database, frame));
+            (self.age + ahead as f32 - 1.0, roots, rotations)
         });
-        let offset = |difference: &dyn Fn(&CharacterPose, &CharacterPose) -> Vec3| {
-            let [before, now, after] = [0, 1, 2].map(|at| difference(&pairs[at].0, &pairs[at].1));
-            match self.kind {
-                Stitching::Inertialize => InertializedOffset::through(before, now, after),
-                _ => InertializedOffset {
-                    value: now,
-                    ..InertializedOffset::default()
-                },
-            }
+        let kind = self.kind;
+        let offset = |[before, now, after]: [Vec3; 3]| match kind {
+            Stitching::Inertialize => InertializedOffset::through(before, now, after),
+            _ => InertializedOffset {
+                value: now,
+                ..InertializedOffset::default()
+            },
         };
-        let root = offset(&|old, new| old.root - new.root);
-        let joints = (0..self.joints.len())
-            .map(|joint| {
-                offset(&|old, new| shortest(old.rotations[joint] * new.rotations[joint].inverse()))
-            })
-            .collect();
-        (self.root, self.joints, self.age) = (root, joints, 0.0);
+        self.root =
+            offset(pairs.map(|(age, [old, new], _)| {
+                old.position + self.root.at(age, FRAMES) - new.position
+            }));
+        for (joint, decaying) in self.joints.iter_mut().enumerate() {
+            *decaying = offset(pairs.map(|(age, roots, rotations)| {
+                let [old, new] = match joint {
+                    0 => roots.map(|root| root.rotation),
+                    _ => rotations.map(|of_frame| of_frame[joint]),
+                };
+                shortest(turned(decaying, age, old) * new.inverse())
+            }));
+        }
+        self.age = 0.0;
     }
 
     /// Adds the offsets that are left.
@@ -89,9 +95,14 @@ impl Stitch {
     fn add(&self, pose: &mut CharacterPose, age: f32) {
         pose.root += self.root.at(age, FRAMES);
         for (rotation, offset) in pose.rotations.iter_mut().zip(&self.joints) {
-            *rotation = (Quat::from_scaled_axis(offset.at(age, FRAMES)) * *rotation).normalize();
+            *rotation = turned(offset, age, *rotation);
         }
     }
+}
+
+/// A joint's rotation with what is left of its offset.
+fn turned(offset: &InertializedOffset, age: f32, rotation: Quat) -> Quat {
+    (Quat::from_scaled_axis(offset.at(age, FRAMES)) * rotation).normalize()
 }
 
 /// The rotation vector of the shorter way round.

@@ -2,7 +2,7 @@
 
 use super::leg::LegJoints;
 use super::pose::CharacterPose;
-use crate::motion::skeleton::Skeleton;
+use crate::motion::skeleton::{JointTransforms, Skeleton};
 use glam::{Quat, Vec3};
 
 /// From this fraction of its length on, a leg is stretched ever more slowly, so that the knee does not
@@ -12,12 +12,19 @@ const SOFT: f32 = 0.985;
 const STRAIGHT: f32 = 0.2;
 
 /// Brings the ankle to `target` (world, m), or as near as the leg reaches, keeping the foot's rotation
-/// in the world and the direction of the knee.
-pub fn solve(skeleton: &Skeleton, pose: &mut CharacterPose, leg: &LegJoints, target: Vec3) {
+/// in the world and the direction of the knee. `world` is memory for the joints of the pose.
+pub fn solve(
+    skeleton: &Skeleton,
+    pose: &mut CharacterPose,
+    leg: &LegJoints,
+    target: Vec3,
+    world: &mut JointTransforms,
+) {
     if leg.knee == leg.hip {
         return;
     }
-    let (at, turned) = pose.world(skeleton);
+    pose.world_into(skeleton, world);
+    let (at, turned) = (&world.positions, &world.rotations);
     let (hip, knee, foot) = (at[leg.hip], at[leg.knee], at[leg.foot]);
     let (thigh, shank) = (knee - hip, foot - knee);
     let (long, short) = (thigh.length(), shank.length());

@@ -8,9 +8,8 @@ use crate::env::locomotion::{LEVELS, LocomotionTask};
 use crate::env::termination;
 use crate::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
 use crate::matching::MotionMatcher;
-use crate::motion::character_frame::to_world;
 use crate::motion::database::Database;
-use crate::motion::features::{FRAMES_PER_STEP, POSE_DIM, TRAJECTORY_DIM, TRAJECTORY_OFFSETS};
+use crate::motion::features::{FRAMES_PER_STEP, TRAJECTORY_OFFSETS};
 use crate::playback::capsule_rig::CapsuleRig;
 use crate::playback::player::{Feet, Player, Style};
 use crate::playback::{CharacterPose, PlacedFrame};
@@ -145,7 +144,7 @@ impl Playthrough {
             ..step.from
         };
         self.shown = from.on(context.database(), self.played as isize);
-        self.pose = self.player.next(self.shown);
+        self.pose.clone_from(self.player.next(self.shown));
         Ok(())
     }
 
@@ -154,7 +153,7 @@ impl Playthrough {
         let maps = self.env.maps.clone();
         advance(&mut self.env, controller)?;
         self.step = Some(Step {
-            requested: requested(context.database(), &self.env, from),
+            requested: from.requested(context.database(), &self.env.queries[0]),
             matched: context.database().candidates[self.env.matched[0] as usize] as usize,
             termination: self.env.termination[0],
             from,
@@ -221,29 +220,4 @@ impl Playthrough {
 
 fn obstacle_count(env: &CpuLocomotion) -> usize {
     env.params.task.obstacles()
-}
-
-/// The trajectory of the last query, in the world of a character at `from`.
-fn requested(
-    database: &Database,
-    env: &CpuLocomotion,
-    from: PlacedFrame,
-) -> [[f32; 4]; TRAJECTORY_OFFSETS.len()] {
-    let normal = &database.normalisation;
-    let query = &env.queries[0][POSE_DIM..][..TRAJECTORY_DIM];
-    let value = |i: usize| query[i] / normal.scale[POSE_DIM + i] + normal.mean[POSE_DIM + i];
-    std::array::from_fn(|k| {
-        let [x, z, hx, hz] = std::array::from_fn(|i| value(4 * k + i));
-        let (moved, turned) = (
-            to_world([x, z], from.heading),
-            to_world([hx, hz], from.heading),
-        );
-        let length = turned[0].hypot(turned[1]).max(1e-6);
-        [
-            from.at[0] + moved[0],
-            from.at[1] + moved[1],
-            turned[0] / length,
-            turned[1] / length,
-        ]
-    })
 }

@@ -66,42 +66,61 @@ pub fn twin(
 ) {
     let (envs, count) = (params.envs as usize, params.count as usize);
     let worlds = maps.par_chunks_exact_mut(MAP_WORDS).enumerate();
-    worlds.with_min_len(16).for_each(|(env, maps)| {
+    let worlds = worlds.with_min_len(16);
+    worlds.for_each_init(Vec::new, |past, (env, maps)| {
         let just_reset = state_u32[state_u32::EPISODE_STEP * envs + env] == 0;
         if just_reset != (params.just_reset == 1) {
             return;
         }
         let r = |field: usize| state_f32[field * envs + env];
-        let boxes = &boxes[env * boxes::FIELDS * count..][..boxes::FIELDS * count];
-        let ground = Ground {
-            boxes,
-            count,
-            points: points(
-                [r(state_f32::X), r(state_f32::Z)],
-                [r(state_f32::HEADING_X), r(state_f32::HEADING_Z)],
-            ),
+        let seen = Surroundings {
+            boxes: &boxes[env * boxes::FIELDS * count..][..boxes::FIELDS * count],
+            velocity: &obstacle_velocity[env * VELOCITY_DIM * count..][..VELOCITY_DIM * count],
             at: [r(state_f32::X), r(state_f32::Z)],
+            heading: [r(state_f32::HEADING_X), r(state_f32::HEADING_Z)],
+        };
+        seen.draw(params, just_reset, past, maps);
+    });
+}
+
+/// What one character's maps are drawn of.
+pub struct Surroundings<'a> {
+    /// `[boxes::FIELDS][count]`
+    pub boxes: &'a [f32],
+    /// `[VELOCITY_DIM][count]`
+    pub velocity: &'a [f32],
+    /// The character's position on the ground, m.
+    pub at: [f32; 2],
+    /// Its unit forward direction.
+    pub heading: [f32; 2],
+}
+
+impl Surroundings<'_> {
+    /// Draws the maps `[MAP_WORDS]`. `params` says how, `just_reset` that there are no earlier ones; `past` is
+    /// memory for the obstacles' earlier places.
+    pub fn draw(&self, params: &Params, just_reset: bool, past: &mut Vec<f32>, maps: &mut [u32]) {
+        let ground = Ground {
+            boxes: self.boxes,
+            count: params.count as usize,
+            points: points(self.at, self.heading),
+            at: self.at,
             edge: params.edge,
         };
-        let centres = &boxes[..VELOCITY_DIM * count];
+        let centres = &self.boxes[..VELOCITY_DIM * ground.count];
         let now = map(&ground, centres);
         let (current, other) = maps.split_at_mut(CELLS * ROW);
         if params.back > 0.0 {
-            let obstacle_velocity =
-                &obstacle_velocity[env * VELOCITY_DIM * count..][..VELOCITY_DIM * count];
-            let before =
-                centres
-                    .iter()
-                    .zip(obstacle_velocity)
-                    .map(|(&place, obstacle_velocity)| {
-                        bounce(place, -obstacle_velocity, params.back, params.square).0
-                    });
-            other.copy_from_slice(&map(&ground, &before.collect::<Vec<f32>>()));
+            let places = centres.iter().zip(self.velocity);
+            let before = places
+                .map(|(&place, velocity)| bounce(place, -velocity, params.back, params.square).0);
+            past.clear();
+            past.extend(before);
+            other.copy_from_slice(&map(&ground, past));
         } else {
             other.copy_from_slice(if just_reset { &now } else { current });
         }
         current.copy_from_slice(&now);
-    });
+    }
 }
 
 /// A cell's centre along one axis of the character frame, m. Exact in floating point.

@@ -16,11 +16,13 @@ pub fn is_wide(layer: &Layer) -> bool {
 }
 
 /// Puts outputs `[rows][height][width][filters]` in the place of `output`, from inputs `[rows][height][width][channels]`.
+/// `offsets` is memory for those of the patches.
 pub fn forward(
     params: &LayerParams,
     flat: &[f32],
     input: &[f32],
     rows: usize,
+    offsets: &mut Vec<usize>,
     output: &mut Vec<f32>,
 ) {
     let layer = &params.layer;
@@ -37,10 +39,10 @@ pub fn forward(
             output.iter_mut().for_each(|sum| *sum = sum.max(0.0));
         }
     } else {
-        let offsets = layer.patch_offsets(rows);
+        layer.patch_offsets_into(rows, offsets);
         output.resize(rows * layer.output_len(), 0.0);
         let mut kernel = Forward {
-            patch_offsets: &offsets,
+            patch_offsets: offsets,
             patch_row_len: layer.patch_row_len(),
             row_stride: layer.row_stride(),
             input,
