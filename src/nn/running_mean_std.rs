@@ -9,7 +9,7 @@ use anyhow::Result;
 use rayon::prelude::*;
 
 /// Normalised numbers are at most this large.
-const CLIP: f32 = 10.0;
+pub const CLIP: f32 = 10.0;
 /// Smaller standard deviations count as this.
 const MIN_STD: f32 = 1e-2;
 /// Rows whose sums a core takes in one go: what is summed over must not depend on how many there are.
@@ -121,6 +121,12 @@ impl RunningMeanStd {
         self.moments.host()
     }
 
+    /// What normalises: means, then inverse standard deviations, `[2][dim]`, of moments in host memory.
+    pub fn scale(&self) -> Vec<f32> {
+        let (means, variances) = self.moments.host().split_at(self.dim);
+        [means.to_vec(), inv_std(variances)].concat()
+    }
+
     /// A copy of the moments in host memory.
     ///
     /// # Errors
@@ -207,11 +213,16 @@ fn take_in(moments: &mut [f32], rows: &[f32], weight: f64) {
 
 fn normalize(moments: &[f32], rows: &mut [f32]) {
     let (means, variances) = moments.split_at(moments.len() / 2);
-    let std = |variance: &f32| 1.0 / variance.sqrt().max(MIN_STD);
-    let inv_std: Vec<f32> = variances.iter().map(std).collect();
+    let inv_std = inv_std(variances);
     for row in rows.chunks_exact_mut(means.len()) {
         for ((value, mean), inv_std) in row.iter_mut().zip(means).zip(&inv_std) {
             *value = ((*value - mean) * inv_std).clamp(-CLIP, CLIP);
         }
     }
+}
+
+/// Inverse standard deviations.
+fn inv_std(variances: &[f32]) -> Vec<f32> {
+    let inv_std = |variance: &f32| 1.0 / variance.sqrt().max(MIN_STD);
+    variances.iter().map(inv_std).collect()
 }
