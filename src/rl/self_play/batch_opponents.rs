@@ -1,10 +1,11 @@
 //! Opponents on a device, who act in a batch of bouts.
 
+use super::Opponent;
+use super::bouts::{Bouts, SharedTable};
 use super::frozen_policies::FrozenPolicies;
 use super::opponents::Opponents;
-use super::{Bouts, Opponent};
 use crate::gpu::{Array, Device};
-use crate::kernels::self_play::{OpponentTable, bout_actions, group_bouts, scripted_actions};
+use crate::kernels::self_play::{bout_actions, group_bouts, scripted_actions};
 use crate::nn::{NetworkCopies, Policy};
 use anyhow::Result;
 use std::sync::Arc;
@@ -14,8 +15,7 @@ use std::sync::Arc;
 pub(super) struct BatchOpponents {
     device: Device,
     opponents: Arc<Opponents>,
-    pub table: OpponentTable,
-    pub table_words: Array<u32>,
+    pub table: SharedTable,
     policies: Option<FrozenPolicies>,
     scripts: Scripts,
     /// See [`group_bouts`].
@@ -64,8 +64,7 @@ impl BatchOpponents {
             false => Some(FrozenPolicies::new(&policies, device, blocks * block)?),
         };
         Ok(BatchOpponents {
-            table_words: Array::from_slice(device, &table.words()),
-            table,
+            table: SharedTable::new(device, table),
             policies: frozen,
             scripts: Scripts::new(opponents, device, widths),
             place: Array::zeroed(device, envs),
@@ -83,10 +82,10 @@ impl BatchOpponents {
     /// # Errors
     /// It has no room for them.
     pub fn set(&mut self, opponents: &Arc<Opponents>) -> Result<()> {
-        let dims = [self.table.envs, self.table.stats];
+        let dims = [self.table.host.envs, self.table.host.stats];
         if self.opponents.are(opponents) {
-            self.table = opponents.table(dims[0], dims[1]);
-            self.table_words = Array::from_slice(&self.device, &self.table.words());
+            let table = opponents.table(dims[0], dims[1]);
+            self.table = SharedTable::new(&self.device, table);
             self.opponents = opponents.clone();
         } else {
             *self = BatchOpponents::new(opponents, &self.device, dims, self.widths)?;
@@ -121,7 +120,7 @@ impl BatchOpponents {
         };
         match &self.device {
             Device::Cpu => group_bouts::twin(
-                &self.table,
+                &self.table.host,
                 bouts.opponent.host(),
                 self.place.host_mut(),
                 self.slots.host_mut(),
@@ -130,7 +129,7 @@ impl BatchOpponents {
             ),
             Device::Gpu(gpu) => group_bouts::launch(
                 gpu,
-                self.table_words.buffer(),
+                self.table.words.buffer(),
                 bouts.opponent.buffer(),
                 self.place.buffer(),
                 self.slots.buffer(),
@@ -146,7 +145,7 @@ impl BatchOpponents {
         let buffers = policies.map(|all| [&all.mean, &all.parameters]);
         let [mean, parameters] = buffers.unwrap_or([&self.nothing; 2]);
         let params = bout_actions::Params {
-            envs: self.table.envs as u32,
+            envs: self.table.host.envs as u32,
             action: self.widths[1] as u32,
             at: at as u32,
             block: (self.slots.len() / self.blocks.len()) as u32,

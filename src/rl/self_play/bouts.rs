@@ -1,12 +1,28 @@
 //! Who plays whom in a batch of environments, on a device, and how it ends.
 
-use super::batch_opponents::BatchOpponents;
 use super::pool::BoutResults;
 use crate::container::{Section, SectionError};
 use crate::gpu::{Array, Device};
 use crate::kernels::humanoid::episode_sums;
 use crate::kernels::self_play::{OpponentTable, end_bouts};
 use anyhow::Result;
+
+/// Whom bouts are against, on the host and on a device.
+pub(super) struct SharedTable {
+    pub host: OpponentTable,
+    /// See [`OpponentTable::words`].
+    pub words: Array<u32>,
+}
+
+impl SharedTable {
+    /// A copy of the table on a device.
+    pub fn new(device: &Device, host: OpponentTable) -> SharedTable {
+        SharedTable {
+            words: Array::from_slice(device, &host.words()),
+            host,
+        }
+    }
+}
 
 /// Who plays whom in a batch of environments, and what the bouts came to that have ended.
 pub(super) struct Bouts {
@@ -41,14 +57,14 @@ impl Bouts {
     /// Counts the bouts that a step has ended, and draws those that begin: see [`end_bouts`].
     pub fn end(
         &mut self,
-        opponents: &BatchOpponents,
+        opponents: &SharedTable,
         termination: &Array<u32>,
         [now, before]: [&Array; 2],
         params: &end_bouts::Params,
     ) {
         match &self.device {
             Device::Cpu => end_bouts::twin(
-                &opponents.table,
+                &opponents.host,
                 termination.host(),
                 now.host(),
                 before.host(),
@@ -60,7 +76,7 @@ impl Bouts {
             ),
             Device::Gpu(gpu) => end_bouts::launch(
                 gpu,
-                opponents.table_words.buffer(),
+                opponents.words.buffer(),
                 termination.buffer(),
                 now.buffer(),
                 before.buffer(),

@@ -13,7 +13,6 @@ mod opponents;
 mod pool;
 mod self_play_env;
 
-use bouts::Bouts;
 pub use learner::SelfPlayLearner;
 pub use opponent::Opponent;
 pub use opponents::{Opponents, PoolMember};

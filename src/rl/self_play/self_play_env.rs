@@ -76,7 +76,7 @@ impl SelfPlayEnv {
         let mut observation = Array::zeroed(device, spec.rows() * widths[0]);
         inner.observe(&mut observation, 0);
         Ok(SelfPlayEnv {
-            bouts: Bouts::new(device, &opponents.table, &params),
+            bouts: Bouts::new(device, &opponents.table.host, &params),
             opponents,
             successes,
             row_stats,
@@ -98,7 +98,8 @@ impl SelfPlayEnv {
     /// They are not of one form, or the device has no room for them.
     pub fn set_opponents(&mut self, opponents: &Arc<Opponents>) -> Result<()> {
         self.opponents.set(opponents)?;
-        self.bouts.clear_results(self.opponents.table.numbers.len());
+        self.bouts
+            .clear_results(self.opponents.table.host.numbers.len());
         Ok(())
     }
 
@@ -107,7 +108,7 @@ impl SelfPlayEnv {
     /// # Errors
     /// The device was lost.
     pub fn take_results(&mut self) -> Result<Vec<BoutResults>> {
-        let numbers = &self.opponents.table.numbers;
+        let numbers = &self.opponents.table.host.numbers;
         let results = self.bouts.results(numbers)?;
         self.bouts.clear_results(numbers.len());
         Ok(results)
@@ -131,7 +132,7 @@ impl SelfPlayEnv {
             step_counter: self.step_counter,
         };
         let stats = [&now, &self.row_stats];
-        self.bouts.end(&self.opponents, ends, stats, &params);
+        self.bouts.end(&self.opponents.table, ends, stats, &params);
         self.row_stats = now;
     }
 }
