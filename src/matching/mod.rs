@@ -37,5 +37,4 @@ mod tree;
 
 pub use index::{DEFAULT_TABLE_BYTES, Index};
 pub use motion_matcher::MotionMatcher;
-pub use pca::principal_axes;
 pub use search::Nearest;

@@ -1,28 +1,18 @@
-//! Principal axes: of any rows, and of the trajectory features. Their twelve numbers are correlated (three positions
-//! and directions of one path), so boxes along these axes are far tighter than along the features'.
+//! Principal axes of the trajectory features. Their twelve numbers are correlated (three positions and
+//! directions of one path), so boxes along these axes are far tighter than along the features'.
 
 use crate::motion::features::{POSE_DIM, ROW_STRIDE, TRAJECTORY_DIM};
 
-/// The axes along which rows of so many numbers, at least one, differ from their mean, those of most variance first,
-/// orthonormal to the last bits of f64.
-pub fn principal_axes(rows: &[&[f32]], dim: usize) -> Vec<Vec<f64>> {
-    let (values, vectors) = eigen(covariance(rows, dim));
-    let mut order: Vec<usize> = (0..dim).collect();
-    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
-    let axis = |axis: usize| vectors.iter().map(|row| row[axis]).collect();
-    order.into_iter().map(axis).collect()
-}
-
-/// Axes of falling variance of trajectories.
+/// Axes of falling variance, orthonormal to the last bits of f64.
 pub struct PrincipalAxes([[f64; TRAJECTORY_DIM]; TRAJECTORY_DIM]);
 
 impl PrincipalAxes {
     /// Axes of the trajectories of `rows`, of which there must be at least one.
     pub fn of(rows: &[[f32; ROW_STRIDE]]) -> Self {
-        let trajectories = rows.iter().map(|row| &row[POSE_DIM..][..TRAJECTORY_DIM]);
-        let axes = principal_axes(&trajectories.collect::<Vec<_>>(), TRAJECTORY_DIM);
-        let axis = |axis: usize| std::array::from_fn(|at| axes[axis][at]);
-        PrincipalAxes(std::array::from_fn(axis))
+        let (values, vectors) = eigen(covariance(rows));
+        let mut order: [usize; TRAJECTORY_DIM] = std::array::from_fn(|i| i);
+        order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+        PrincipalAxes(order.map(|axis| vectors.map(|row| row[axis])))
     }
 
     /// The axes in single precision, one a row.
@@ -44,20 +34,18 @@ impl PrincipalAxes {
     }
 }
 
-type Matrix = Vec<Vec<f64>>;
+type Matrix = [[f64; TRAJECTORY_DIM]; TRAJECTORY_DIM];
 
-fn covariance(rows: &[&[f32]], dim: usize) -> Matrix {
+fn covariance(rows: &[[f32; ROW_STRIDE]]) -> Matrix {
     let n = rows.len() as f64;
-    let mean = |at: usize| rows.iter().map(|row| f64::from(row[at])).sum::<f64>() / n;
-    let mean: Vec<f64> = (0..dim).map(mean).collect();
-    let mut matrix = vec![vec![0.0; dim]; dim];
-    let mut away = vec![0.0; dim];
+    let at = |row: &[f32; ROW_STRIDE], i: usize| f64::from(row[POSE_DIM + i]);
+    let mean: [f64; TRAJECTORY_DIM] =
+        std::array::from_fn(|i| rows.iter().map(|row| at(row, i)).sum::<f64>() / n);
+    let mut matrix = [[0.0; TRAJECTORY_DIM]; TRAJECTORY_DIM];
     for row in rows {
-        for (away, (&number, mean)) in away.iter_mut().zip(row.iter().zip(&mean)) {
-            *away = f64::from(number) - mean;
-        }
-        for (line, a) in matrix.iter_mut().zip(&away) {
-            for (sum, b) in line.iter_mut().zip(&away) {
+        let away: [f64; TRAJECTORY_DIM] = std::array::from_fn(|i| at(row, i) - mean[i]);
+        for (line, a) in matrix.iter_mut().zip(away) {
+            for (sum, b) in line.iter_mut().zip(away) {
                 *sum += a * b / n;
             }
         }
@@ -67,15 +55,14 @@ fn covariance(rows: &[&[f32]], dim: usize) -> Matrix {
 
 /// Eigenvalues, and eigenvectors as columns, of a symmetric matrix: Jacobi's rotations, each of
 /// which clears one element off the diagonal.
-fn eigen(mut matrix: Matrix) -> (Vec<f64>, Matrix) {
-    /// Convergence is quadratic: these are plenty for small matrices.
+fn eigen(mut matrix: Matrix) -> ([f64; TRAJECTORY_DIM], Matrix) {
+    /// Convergence is quadratic: these are plenty for so small a matrix.
     const SWEEPS: usize = 20;
-    let dim = matrix.len();
-    let unit = |i: usize| (0..dim).map(|j| f64::from(u8::from(i == j))).collect();
-    let mut vectors: Matrix = (0..dim).map(unit).collect();
+    let mut vectors: Matrix =
+        std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
     for _ in 0..SWEEPS {
-        for p in 0..dim {
-            for q in p + 1..dim {
+        for p in 0..TRAJECTORY_DIM {
+            for q in p + 1..TRAJECTORY_DIM {
                 let off = matrix[p][q];
                 if off == 0.0 {
                     continue;
@@ -97,10 +84,10 @@ fn eigen(mut matrix: Matrix) -> (Vec<f64>, Matrix) {
             }
         }
     }
-    ((0..dim).map(|i| matrix[i][i]).collect(), vectors)
+    (std::array::from_fn(|i| matrix[i][i]), vectors)
 }
 
-fn rotate(row: &mut [f64], p: usize, q: usize, cos: f64, sin: f64) {
+fn rotate(row: &mut [f64; TRAJECTORY_DIM], p: usize, q: usize, cos: f64, sin: f64) {
     let (a, b) = (row[p], row[q]);
     row[p] = cos * a - sin * b;
     row[q] = sin * a + cos * b;
@@ -110,6 +97,7 @@ fn rotate(row: &mut [f64], p: usize, q: usize, cos: f64, sin: f64) {
 mod tests {
     use super::*;
     use crate::kernels::rng::{gaussian, random4};
+    use crate::motion::features::FEATURE_DIM;
 
     #[test]
     fn axes_are_orthonormal_and_carry_falling_variance_without_covariance() {
@@ -127,10 +115,17 @@ mod tests {
                 assert!((dot - f64::from(u8::from(i == j))).abs() < 1e-13);
             }
         }
-        let projected: Vec<[f32; TRAJECTORY_DIM]> =
-            rows.iter().map(|row| axes.project(row)).collect();
-        let projected: Vec<&[f32]> = projected.iter().map(|row| &row[..]).collect();
-        let covariance = covariance(&projected, TRAJECTORY_DIM);
+        let projected: Vec<[f32; ROW_STRIDE]> = rows
+            .iter()
+            .map(|row| {
+                let projected = axes.project(row);
+                std::array::from_fn(|i| match i {
+                    POSE_DIM..FEATURE_DIM => projected[i - POSE_DIM],
+                    _ => 0.0,
+                })
+            })
+            .collect();
+        let covariance = covariance(&projected);
         for i in 0..TRAJECTORY_DIM {
             assert!(i == 0 || covariance[i][i] <= covariance[i - 1][i - 1]);
             for off in &covariance[i][..i] {

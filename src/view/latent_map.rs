@@ -1,6 +1,6 @@
 //! A map of the sphere of latents: what a body does under which of them.
 
-use super::sphere::{across, any_across, combined, dot, two_principal_axes};
+use super::sphere::{across, any_across, combined, dot, principal_axes};
 use crate::env::humanoid::driver::BodyDriver;
 use crate::env::humanoid::fidelity::COMPARED;
 use crate::env::humanoid::skills::clips_under;
@@ -48,8 +48,8 @@ impl LatentMap {
         let first = if count == 0 { draw.any(RANDOM) } else { own };
         let known = clips_of(&first);
         let axes = match count {
-            0 => two_principal_axes(&means(&first, &known)),
-            _ => two_principal_axes(&first),
+            0 => principal_axes(&means(&first, &known)),
+            _ => principal_axes(&first),
         };
         let spread = spread(&axes, &draw.any(SPREAD));
         let clips = [known, clips_of(&spread)].concat();
@@ -186,7 +186,7 @@ mod tests {
             own: None,
         };
         LatentMap {
-            axes: two_principal_axes(&vectors),
+            axes: principal_axes(&vectors),
             points: vectors.iter().map(point).collect(),
             legend: Vec::new(),
         }

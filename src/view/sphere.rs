@@ -1,7 +1,5 @@
 //! Geometry of the sphere on which latents are: vectors of length 1.
 
-use crate::matching::principal_axes;
-
 /// What is shorter than this, of vectors of length 1, has no direction.
 const NO_DIRECTION: f32 = 1e-3;
 
@@ -50,10 +48,31 @@ pub fn great_circle(from: &[f32], to: &[f32], part: f32) -> Vec<f32> {
 
 /// The two axes along which vectors differ most from their mean, orthonormal; any ones where they do not differ.
 /// There must be at least one vector, of two numbers or more.
-pub fn two_principal_axes(vectors: &[Vec<f32>]) -> [Vec<f32>; 2] {
-    let rows: Vec<&[f32]> = vectors.iter().map(|vector| &vector[..]).collect();
-    let axes = principal_axes(&rows, vectors[0].len());
-    [0, 1].map(|axis| axes[axis].iter().map(|&number| number as f32).collect())
+pub fn principal_axes(vectors: &[Vec<f32>]) -> [Vec<f32>; 2] {
+    let dim = vectors[0].len();
+    let mean = |at: usize| vectors.iter().map(|v| v[at]).sum::<f32>() / vectors.len() as f32;
+    let mean: Vec<f32> = (0..dim).map(mean).collect();
+    let away = vectors.iter().map(|v| combined([1.0, -1.0], [v, &mean]));
+    let away: Vec<Vec<f32>> = away.collect();
+    let first = principal_axis(&away, &[]);
+    let second = principal_axis(&away, &[&first]);
+    [first, second]
+}
+
+/// The axis across others along which vectors are longest: by iterated products with their second moments.
+fn principal_axis(vectors: &[Vec<f32>], others: &[&[f32]]) -> Vec<f32> {
+    const ITERATIONS: usize = 200;
+    let rests: Vec<Vec<f32>> = vectors.iter().map(|v| rest(v, others)).collect();
+    let dim = rests[0].len();
+    let longest = rests.iter().max_by(|a, b| dot(a, a).total_cmp(&dot(b, b)));
+    let start = longest.and_then(|longest| across(longest, others));
+    let start = start.or_else(|| any_across(dim, others));
+    let moved = |axis: Vec<f32>, _| {
+        let sum = |sum: Vec<f32>, v: &Vec<f32>| combined([1.0, dot(v, &axis)], [&sum, v]);
+        let product = rests.iter().fold(vec![0.0; dim], sum);
+        across(&product, others).unwrap_or(axis)
+    };
+    (0..ITERATIONS).fold(start.unwrap_or_else(|| vec![0.0; dim]), moved)
 }
 
 #[cfg(test)]
@@ -85,7 +104,7 @@ mod tests {
             .iter()
             .map(|[a, b]| vec![5.0 + 0.6 * a, *b, 0.8 * a])
             .collect();
-        let [first, second] = two_principal_axes(&vectors);
+        let [first, second] = principal_axes(&vectors);
         assert!(
             (dot(&first, &[0.6, 0.0, 0.8]).abs() - 1.0).abs() < 1e-5,
             "{first:?}"
@@ -93,7 +112,7 @@ mod tests {
         assert!((second[1].abs() - 1.0).abs() < 1e-5, "{second:?}");
         // Alike, or all along a line: they are orthonormal all the same.
         for vectors in [vec![vec![1.0, 0.0, 0.0]], vectors[..2].to_vec()] {
-            let [first, second] = two_principal_axes(&vectors);
+            let [first, second] = principal_axes(&vectors);
             assert!(dot(&first, &second).abs() < 1e-5);
             assert!((dot(&second, &second) - 1.0).abs() < 1e-5);
         }
