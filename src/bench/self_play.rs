@@ -24,8 +24,8 @@ const ENVS: [usize; 3] = [256, 1024, 4096];
 /// Policies of a pool.
 const POOLS: [(&str, usize); 2] = [("one opponent", 1), ("four opponents", 4)];
 /// Length of a bout, s, and steps until every environment has met somebody of the pool.
-const BOUT_S: f32 = 1.0;
-const WARM_UP: usize = 30;
+const BOUT_S: f32 = 0.4;
+const WARM_UP: usize = 13;
 
 /// Measures rising numbers of environments.
 pub fn measure(context: &BenchContext, record: &mut Recorder) -> Result<()> {
