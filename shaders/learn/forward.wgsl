@@ -2,7 +2,8 @@
 //
 // batch       see network
 // samples     [..][width]                       observations first
-// parameters  [parameters]
+// parameters  [copies][parameters]
+// copies      [blocks]                          which copy of the parameters evaluates a block, or NO_COPY
 // rows        [blocks][row_stride][HALVES] of vec4   observations, and the hidden layers' activations
 // outputs     [rows][outputs] of the first network, then of the next
 
@@ -23,9 +24,10 @@ struct Params {
 @group(0) @binding(0) var<storage, read> batch: BatchLayout;
 @group(0) @binding(1) var<storage, read> samples: array<f32>;
 @group(0) @binding(2) var<storage, read> parameters: array<f32>;
-@group(0) @binding(3) var<storage, read_write> rows: array<vec4f>;
-@group(0) @binding(4) var<storage, read_write> outputs: array<f32>;
-@group(0) @binding(5) var<uniform> params: Params;
+@group(0) @binding(3) var<storage, read> copies: array<u32>;
+@group(0) @binding(4) var<storage, read_write> rows: array<vec4f>;
+@group(0) @binding(5) var<storage, read_write> outputs: array<f32>;
+@group(0) @binding(6) var<uniform> params: Params;
 
 // Rows that fill the last block observe nothing.
 fn observed(row: u32, column: u32) -> f32 {
@@ -50,7 +52,8 @@ fn activation(sums: vec4f, kind: u32) -> vec4f {
 fn forward(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
     let network = params.network + group.z;
     let row = group.x * BLOCK;
-    if (row >= params.rows) { return; }
+    if (row >= params.rows || copies[group.x] == NO_COPY) { return; }
+    let copy = copies[group.x] * batch.parameters;
     let block = group.x * batch.row_stride;
     let first = batch.first_layer[network];
     let end = batch.first_layer[network + 1u];
@@ -65,11 +68,12 @@ fn forward(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
         storageBarrier();
         let layer = batch.layer[index];
         for (var output = local; output < layer.outputs; output += LANES) {
-            let bias = parameters[layer.weights + layer.inputs * layer.outputs + output];
+            let weights = copy + layer.weights;
+            let bias = parameters[weights + layer.inputs * layer.outputs + output];
             var low = vec4f(bias);
             var high = vec4f(bias);
             for (var input = 0u; input < layer.inputs; input++) {
-                let weight = parameters[layer.weights + input * layer.outputs + output];
+                let weight = parameters[weights + input * layer.outputs + output];
                 let at = (block + layer.input_col + input) * HALVES;
                 low += weight * rows[at];
                 high += weight * rows[at + 1u];

@@ -5,7 +5,7 @@
 // action    [..][action]
 // log_prob  [..]           natural logarithm of the density at the action
 
-#import rng
+#import action_noise
 
 struct Params {
     rows: u32,
@@ -25,7 +25,6 @@ struct Params {
 @group(0) @binding(3) var<storage, read_write> log_prob: array<f32>;
 @group(0) @binding(4) var<uniform> params: Params;
 
-const NOISE = 0x4e4f4953u; // random stream
 const HALF_LOG_TAU = 0.9189385;
 
 @compute @workgroup_size(64)
@@ -34,7 +33,7 @@ fn sample_action(@builtin(global_invocation_id) id: vec3u) {
     let row = params.row + id.x;
     var sum = 0.0;
     for (var i = 0u; i < params.action; i++) {
-        let noise = gaussian(random4(params.seed, params.first + id.x, params.step_counter, NOISE + i));
+        let noise = action_noise(params.seed, params.first + id.x, params.step_counter, i);
         let at = row * params.action + i;
         action[at] = mean[at] + exp(log_std[i]) * noise;
         sum -= 0.5 * noise * noise + log_std[i] + HALF_LOG_TAU;

@@ -42,3 +42,5 @@ struct BatchLayout {
 const BLOCK = 8u;   // rows, or inputs, an invocation computes at once: each fetch serves so many
 const HALVES = 2u;  // vec4 of a block
 const LANES = 32u;  // invocations of a workgroup, each with an output or an input of a layer
+
+const NO_COPY = 0xffffffffu; // of the parameters: what it would evaluate is nobody's

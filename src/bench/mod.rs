@@ -2,7 +2,7 @@
 //!
 //! [`bench_device`] is where a stage runs, [`clock`] how it is timed, [`roofline`] what the device can do
 //! at most ([`peak_rates`]); [`data`] are databases of any size. [`search`], [`environment`], [`network`],
-//! [`physics`], [`training`] and [`drawing`] are the stages.
+//! [`physics`], [`self_play`], [`training`] and [`drawing`] are the stages.
 
 mod bench_device;
 mod clock;
@@ -16,6 +16,7 @@ mod plan;
 mod recorder;
 mod roofline;
 mod search;
+mod self_play;
 mod stage;
 mod training;
 
@@ -63,6 +64,7 @@ pub fn run(plan: &BenchPlan, tell: &dyn Fn(&str)) -> Result<Vec<Measurement>> {
         };
         environment::measure(&context, &mut record)?;
         physics::measure(&context, &mut record)?;
+        self_play::measure(&context, &mut record)?;
         network::measure(&context, &mut record)?;
         training::measure(&context, &mut record)?;
         drawing::measure(&context, &mut record)?;

@@ -4,7 +4,7 @@ use crate::gpu::Choice;
 use std::path::Path;
 
 /// Names for `--filter`.
-pub const STAGES: [&str; 11] = [
+pub const STAGES: [&str; 12] = [
     "memory",
     "arithmetic",
     "search",
@@ -12,6 +12,7 @@ pub const STAGES: [&str; 11] = [
     "hits",
     "environment",
     "physics",
+    "self_play",
     "network",
     "gradient",
     "training",

@@ -191,10 +191,9 @@ impl Render {
         let mut envs = body.open(episode);
         let model = envs.task().model().clone();
         let mut bout = body.bouts.clone().map(RecordedBout::new);
-        let mut seen = Ok(());
         let after = |env: &CpuHumanoidEnv, running: bool| {
-            if let (Some(bout), Ok(())) = (&mut bout, &seen) {
-                seen = bout.push(env, running);
+            if let Some(bout) = &mut bout {
+                bout.push(env, running);
             }
         };
         let motion = match latents {
@@ -203,7 +202,6 @@ impl Render {
             }
             _ => play::record(&mut envs, driver, task, after),
         };
-        seen?;
         let bout = bout.as_ref();
         if let Output::Png(path) = output {
             film_strip(gpu, &model, &motion, bout, times, path)?;

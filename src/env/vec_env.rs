@@ -65,12 +65,10 @@ pub trait VecEnv: Any + Send {
     /// [`VecEnv::stat_names`].
     fn stats(&mut self, out: &mut Array);
 
-    /// What each row would add to [`VecEnv::stats`] now, `[rows][stats]`; empty of environments that do not know.
-    ///
-    /// # Errors
-    /// The device was lost.
-    fn row_stats(&self) -> Result<Vec<f32>> {
-        self.inner().map_or(Ok(Vec::new()), VecEnv::row_stats)
+    /// What each row would add to [`VecEnv::stats`] now, `[stats][rows]`, on their device; none of environments that do
+    /// not know.
+    fn row_stats(&self) -> Option<Array> {
+        self.inner().and_then(VecEnv::row_stats)
     }
 
     /// Episodes that begin from now on are of this level of a [curriculum](super::curriculum).

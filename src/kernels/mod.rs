@@ -6,6 +6,7 @@
 //! - [`physics`]: a step of the articulated bodies;
 //! - [`humanoid`]: what tasks of the simulated humanoid add to it;
 //! - [`learn`]: sampling, advantages, and the gradient step of dense networks;
+//! - [`self_play`]: bouts against policies that learn no more;
 //! - [`mod@bench`]: what a device could do at most;
 //! - [`rng`]: counter-based random numbers that shaders and twins share;
 //! - [`termination`]: how a step ends.
@@ -17,4 +18,5 @@ pub mod locomotion;
 pub mod physics;
 pub mod rng;
 pub mod search;
+pub mod self_play;
 pub mod termination;

@@ -3,7 +3,7 @@
 //! [`layer`] and [`network`] say where everything lies in one flat vector of parameters, [`actor_critic`]
 //! for an actor and its critic; an [`engine`] evaluates networks and takes the gradient of an
 //! [`objective`], on the CPU ([`cpu`]) or a GPU ([`gpu`]); [`adam`] steps against it.
-//! [`running_mean_std`] normalises; a [`policy`] is what is left when learning is over.
+//! [`network_copies`] evaluates one network with several parameters at once. [`running_mean_std`] normalises; a [`policy`] is what is left when learning is over.
 
 pub mod actor_critic;
 pub mod adam;
@@ -14,6 +14,7 @@ pub mod extent;
 pub mod gpu;
 pub mod layer;
 pub mod network;
+pub mod network_copies;
 pub mod objective;
 pub mod observation;
 pub mod policy;
@@ -25,6 +26,7 @@ pub use adam::Adam;
 pub use engine::Engine;
 pub use extent::{EngineSize, Rows};
 pub use network::{Network, NetworkConfig, NetworkError};
+pub use network_copies::NetworkCopies;
 pub use objective::Objective;
 pub use policy::{Policy, PolicyScratch};
 pub use running_mean_std::RunningMeanStd;

@@ -65,6 +65,12 @@ impl Policy {
         &self.parameters[self.networks.log_std()]
     }
 
+    /// Whether another policy differs by its numbers alone.
+    pub fn has_form_of(&self, other: &Policy) -> bool {
+        let form = |policy: &Policy| (policy.networks.clone(), policy.normalizer.is_some());
+        form(self) == form(other)
+    }
+
     /// Mean actions `[n][action]` for observations `[n][observation]`, on all cores.
     pub fn mean(&self, observations: &[f32]) -> Vec<f32> {
         let rows = observations.len() / self.observation().dim();

@@ -1,21 +1,51 @@
 //! Rows of arrays, on either device: picked, put side by side, replaced.
 
-use crate::gpu::{Array, Device};
+use crate::gpu::{Array, Buffer, Device};
+use crate::kernels::learn::gather_rows;
 #[cfg(feature = "gpu")]
 use crate::nn::gpu::tensors;
+use bytemuck::Pod;
 use std::ops::Range;
 
 /// The rows of `from`, `[..][width]`, by their numbers, `[n][width]`.
-pub fn pick(device: &Device, from: &Array, width: usize, rows: &[u32]) -> Array {
+pub fn pick(device: &Device, from: &Array, width: usize, numbers: &[u32]) -> Array {
     match device {
         Device::Cpu => {
-            let row = |&row: &u32| &from.host()[row as usize * width..][..width];
-            Array::Host(rows.iter().flat_map(row).copied().collect())
+            let mut out = vec![0.0; numbers.len() * width];
+            let params = params(numbers.len(), width);
+            gather_rows::twin(from.host(), numbers, &mut out, &params);
+            Array::Host(out)
         }
-        #[cfg(feature = "gpu")]
-        Device::Gpu(gpu) => tensors::pick(gpu, from, width, rows),
-        #[cfg(not(feature = "gpu"))]
-        Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
+        Device::Gpu(_) => gather(device, from, width, &Array::from_slice(device, numbers)),
+    }
+}
+
+/// [`pick`] by numbers on the device, of rows of any kind.
+pub fn gather<T: Pod>(
+    device: &Device,
+    from: &Array<T>,
+    width: usize,
+    numbers: &Array<u32>,
+) -> Array<T> {
+    let params = params(numbers.len(), width);
+    match device {
+        Device::Cpu => {
+            let mut out = vec![T::zeroed(); numbers.len() * width];
+            gather_rows::twin(from.host(), numbers.host(), &mut out, &params);
+            Array::Host(out)
+        }
+        Device::Gpu(gpu) => {
+            let out = Buffer::empty(gpu, numbers.len() * width);
+            gather_rows::launch(gpu, from.buffer(), numbers.buffer(), &out, &params);
+            Array::Gpu(out)
+        }
+    }
+}
+
+fn params(rows: usize, width: usize) -> gather_rows::Params {
+    gather_rows::Params {
+        rows: rows as u32,
+        width: width as u32,
     }
 }
 

@@ -11,6 +11,7 @@ pub mod rollout;
 pub mod sample_action;
 pub mod self_play;
 mod step_columns;
+pub mod strides;
 pub mod task_weight;
 pub mod value_normalizer;
 

@@ -4,7 +4,6 @@ use crate::env::{EnvSpec, Transition};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::{keep_first_end, sum_decision};
 use crate::nn::rows;
-use anyhow::Result;
 
 /// What one step of inner environments leaves, `[rows]`; of its final observations `[rows][observation]`.
 pub(in crate::rl) struct StepColumns {
@@ -40,23 +39,18 @@ impl StepColumns {
     }
 
     /// Rows by their numbers.
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn pick(&self, device: &Device, numbers: &[u32]) -> Result<StepColumns> {
-        let whole = |column: &Array<u32>| -> Result<Array<u32>> {
-            let column = column.read(device)?;
-            let picked: Vec<u32> = numbers.iter().map(|&row| column[row as usize]).collect();
-            Ok(Array::from_slice(device, &picked))
-        };
+    pub fn gather(&self, device: &Device, numbers: &Array<u32>) -> StepColumns {
+        let real = |column: &Array| rows::gather(device, column, 1, numbers);
+        let whole = |column: &Array<u32>| rows::gather(device, column, 1, numbers);
         let observation = self.final_observation.len() / self.reward.len();
-        Ok(StepColumns {
-            reward: rows::pick(device, &self.reward, 1, numbers),
-            style_reward: rows::pick(device, &self.style_reward, 1, numbers),
-            termination: whole(&self.termination)?,
-            group: whole(&self.group)?,
-            final_observation: rows::pick(device, &self.final_observation, observation, numbers),
-        })
+        let last = &self.final_observation;
+        StepColumns {
+            reward: real(&self.reward),
+            style_reward: real(&self.style_reward),
+            termination: whole(&self.termination),
+            group: whole(&self.group),
+            final_observation: rows::gather(device, last, observation, numbers),
+        }
     }
 
     /// Takes the step, of this number and with such a share in the reward, into a transition of environments with

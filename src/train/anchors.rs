@@ -6,7 +6,8 @@ use crate::env::humanoid::task::{DT, KEY_BODIES};
 use crate::kernels::humanoid::boxing_observe;
 use crate::kernels::physics::proprioception::{ROOT_ANGULAR_VELOCITY, ROOT_VELOCITY};
 use crate::physics::motion_library::MotionLibrary;
-use crate::rl::ase::{LatentDraw, Script, Stride};
+use crate::rl::ase::{LatentDraw, Script};
+use crate::rl::strides::{Stride, Strides};
 use glam::{Vec2, Vec3};
 
 /// Seed of the latents that change.
@@ -38,17 +39,17 @@ pub fn scripts(
     // A step counts more than a gesture.
     let quietest = least(others, |clip| 3.0 * clips[clip].speed + clips[clip].hands);
     let strides = clips.iter().zip(&latents).map(|(clip, latent)| Stride {
-        latent: latent.clone(),
+        action: latent.clone(),
         forward: clip.forward,
         turn: clip.turn,
     });
-    let approach = Script::Approach {
+    let approach = Script::Strides(Strides {
         target: style + boxing_observe::OPPONENT,
         strides: strides.collect(),
-    };
+    });
     vec![
-        ("(stands)", Script::Keep(latents[quietest].clone())),
-        ("(jabs)", Script::Keep(latents[quickest].clone())),
+        ("(stands)", Script::keep(latents[quietest].clone())),
+        ("(jabs)", Script::keep(latents[quickest].clone())),
         ("(advances)", approach),
         random,
     ]

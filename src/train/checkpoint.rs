@@ -3,7 +3,7 @@
 //! A file of sections. `run` says of what run it is, `policy` is enough to evaluate; `learner`, `envs.*`,
 //! `curriculum` and `trainer` are what the training goes on with.
 
-use super::config::{Config, VERSION};
+use super::config::{Config, Difference, VERSION};
 use super::fingerprint::Fingerprint;
 use super::state::TrainerState;
 use crate::container::{Format, Section, SectionError, Sections, StoreError};
@@ -94,6 +94,14 @@ pub enum CheckpointError {
     )]
     Changed {
         /// First key that differs, like `ppo.gamma`.
+        key: String,
+    },
+    /// A configuration of a version with other choices.
+    #[error(
+        "the run was started by a version of footwork that differs by the choice `{key}`: go on with that version, or start another run"
+    )]
+    Version {
+        /// First key that only one of the two versions knows, like `self_play.scripted`.
         key: String,
     },
     /// A checkpoint of another task.
@@ -245,11 +253,15 @@ impl Checkpoint {
     /// Refuses to go on under another configuration than the one that the run was started with.
     ///
     /// # Errors
-    /// [`CheckpointError::Changed`].
+    /// [`CheckpointError::Changed`] or [`CheckpointError::Version`].
     pub fn check_same(&self, config: &Config) -> Result<(), CheckpointError> {
         match config.difference(&self.header.config) {
             None => Ok(()),
-            Some(key) => Err(CheckpointError::Changed { key }),
+            // Whatever the file leaves out, a configuration names all choices of its version.
+            Some(Difference { key, in_both }) => Err(match in_both {
+                true => CheckpointError::Changed { key },
+                false => CheckpointError::Version { key },
+            }),
         }
     }
 

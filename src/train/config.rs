@@ -15,6 +15,7 @@ use crate::rl::ppo::Ppo;
 use crate::rl::self_play::SelfPlay;
 use crate::rl::task_weight::TaskWeightConfig;
 pub(super) use check::{check_amp, check_ase, within};
+pub use overlay::Difference;
 pub(super) use overlay::nearest;
 use overlay::{Mistake, different, line_of, names, overlay};
 use serde::de::DeserializeOwned;
@@ -387,7 +388,7 @@ impl Config {
 
     /// The first key that decides over what is learned and has another value in the text of another
     /// run's `config.toml`.
-    pub fn difference(&self, other: &str) -> Option<String> {
+    pub fn difference(&self, other: &str) -> Option<Difference> {
         let decisive = |mut all: toml::Table| {
             all.retain(|key, _| DECISIVE.contains(&key));
             all

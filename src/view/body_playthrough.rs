@@ -253,8 +253,8 @@ impl BodyPlaythrough {
     /// The start of the next episode, after the step of the context's environment that may have ended one.
     fn begin_next(&self, context: &mut BodyContext) -> Result<BodyPlaythrough> {
         let path = self.path.as_ref();
-        let over = |bout: &Bout| Ok::<_, anyhow::Error>(bout.over(&tally(&context.env)?));
-        let bout = self.bout.as_ref().map(over).transpose()?;
+        let over = |bout: &Bout| bout.over(&tally(&context.env));
+        let bout = self.bout.as_ref().map(over);
         Ok(BodyPlaythrough {
             bout,
             command: self.command,

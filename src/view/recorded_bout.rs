@@ -5,7 +5,6 @@ use super::scene::Scene;
 use crate::env::humanoid::boxing::BoxingTask;
 use crate::env::humanoid::boxing::bout::{Bout, tally};
 use crate::env::humanoid::task::CpuHumanoidEnv;
-use anyhow::Result;
 use std::sync::Arc;
 
 /// What happened in a bout besides the fighters' motion.
@@ -26,18 +25,14 @@ impl RecordedBout {
 
     /// Takes in a step of the only environment. A knock-down in the last one is seen in the frame before it: after it
     /// the next bout has begun.
-    ///
-    /// # Errors
-    /// None: the environment is on the host.
-    pub fn push(&mut self, env: &CpuHumanoidEnv, running: bool) -> Result<()> {
+    pub fn push(&mut self, env: &CpuHumanoidEnv, running: bool) {
         let last = self.moments.last_mut().expect("the start");
         if running {
             let next = last.next(&self.task, &env.batch.worlds[0], &env.task_states[0]);
             self.moments.push(next);
         } else {
-            *last = last.ended(&tally(env)?);
+            *last = last.ended(&tally(env));
         }
-        Ok(())
     }
 
     /// How it stood in a frame.

@@ -232,6 +232,17 @@ fn a_run_whose_data_or_configuration_changed_is_not_resumed() {
         place.write("run/config.toml", config.replacen(was, is, 1));
         place.refused(resume, 1, &[key, "config.toml", "put it back"]);
     }
+    // A version that knew fewer choices left its checkpoint and its configuration.
+    let good = std::fs::read(place.path(LAST)).unwrap();
+    let mut older = Checkpoint::load(&place.path(LAST)).unwrap();
+    let known = older.header.config.lines();
+    let known = known.filter(|line| !line.starts_with("value_clip"));
+    older.header.config = known.collect::<Vec<_>>().join("\n");
+    assert!(older.header.config.len() < config.len());
+    older.save(&place.path(LAST)).unwrap();
+    place.write("run/config.toml", &older.header.config);
+    place.refused(resume, 1, &["`ppo.value_clip`", "version of footwork"]);
+    place.write(LAST, good);
     place.write("run/config.toml", config.replacen("steps", "stepz", 1));
     place.refused(resume, 2, &["unknown key `stepz`", "run/config.toml"]);
     place.refused("eval run", 2, &["unknown key `stepz`"]);

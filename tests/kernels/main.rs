@@ -14,5 +14,6 @@ mod locomotion;
 mod physics;
 mod rng;
 mod search;
+mod self_play;
 
 use support::{checked, inputs, oracle};

@@ -18,18 +18,21 @@ crate::shader_params! {
     }
 }
 
-/// Evaluates so many `networks`, one after the other into `outputs`.
+/// Evaluates so many `networks`, one after the other into `outputs`. Every block of rows has, in `copies`, the number of
+/// the copy of the `parameters`, `[copies][parameters]`, that it is evaluated by; with [`NO_COPY`](super::network::NO_COPY)
+/// it is not.
 pub fn launch(
     gpu: &Gpu,
     networks: usize,
     layout: &Buffer<u32>,
     samples: &Buffer<f32>,
     parameters: &Buffer<f32>,
+    copies: &Buffer<u32>,
     rows: &Buffer<f32>,
     outputs: &Buffer<f32>,
     params: &Params,
 ) {
     let groups = [params.rows.div_ceil(BLOCK as u32), 1, networks as u32];
-    let buffers: [&dyn Argument; 5] = [layout, samples, parameters, rows, outputs];
+    let buffers: [&dyn Argument; 6] = [layout, samples, parameters, copies, rows, outputs];
     gpu.launch(&shader::FORWARD, groups, &buffers, params);
 }

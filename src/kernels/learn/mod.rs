@@ -7,7 +7,7 @@
 //! Skills add [`advance_latents`], [`encoder_loss`], [`skill_reward`] and [`diversity_loss`].
 //!
 //! Under a high level, a low-level policy is given its [`low_level_input`]; [`keep_first_end`] and [`sum_decision`]
-//! make a decision's transition of the steps that it lasts.
+//! make a decision's transition of the steps that it lasts. [`gather_rows`] picks rows of any array.
 
 pub mod adam;
 pub mod adapt_lr;
@@ -18,6 +18,7 @@ pub mod diversity_loss;
 pub mod encoder_loss;
 pub mod forward;
 pub mod gae;
+pub mod gather_rows;
 pub mod gather_samples;
 pub mod grad_norm;
 pub mod gradient;

@@ -29,6 +29,9 @@ pub const RELU: u32 = wgsl::RELU;
 /// Activation by the hyperbolic tangent.
 pub const TANH: u32 = wgsl::TANH;
 
+/// Number of no copy of the parameters: rows that are not evaluated.
+pub const NO_COPY: u32 = wgsl::NO_COPY;
+
 /// A dense layer.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

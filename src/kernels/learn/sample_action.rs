@@ -1,5 +1,6 @@
 //! Actions drawn from the policy's Gaussian. Shader: `shaders/learn/sample_action.wgsl`.
 
+use crate::gpu::shader::sample_action::constants::NOISE;
 use crate::gpu::{Buffer, Gpu, groups, shader};
 use crate::kernels::rng::{gaussian, random4};
 
@@ -20,7 +21,6 @@ crate::shader_params! {
     }
 }
 
-const NOISE: u32 = 0x4e4f_4953;
 const HALF_LOG_TAU: f32 = 0.918_938_5;
 
 /// Queues the shader on `gpu`.
@@ -59,12 +59,15 @@ pub fn twin(
         let mut sum = 0.0;
         let at = (first + row as usize) * width;
         for i in 0..width {
-            let stream = NOISE + i as u32;
-            let bits = random4(params.seed, params.first + row, params.step_counter, stream);
-            let noise = gaussian(bits);
+            let noise = noise(params.seed, params.first + row, params.step_counter, i);
             action[at + i] = mean[at + i] + std[i] * noise;
             sum -= 0.5 * noise * noise + log_std[i] + HALF_LOG_TAU;
         }
         log_prob[first + row as usize] = sum;
     }
+}
+
+/// The noise of a number of an action, of the row that has the number `row` in its batch.
+pub fn noise(seed: u32, row: u32, step_counter: u32, number: usize) -> f32 {
+    gaussian(random4(seed, row, step_counter, NOISE + number as u32))
 }

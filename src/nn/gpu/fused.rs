@@ -24,6 +24,8 @@ pub struct Fused {
     forward: Layout,
     /// To learn with, one for each size of a minibatch that there was.
     minibatch: Vec<Layout>,
+    /// Number of the copy of the parameters, for every block: the only one's.
+    only_copy: Buffer<u32>,
     /// Activations of a minibatch, laid out as [`BatchLayout::at`] says.
     rows: Buffer<f32>,
     grads: Buffer<f32>,
@@ -37,13 +39,13 @@ pub struct Fused {
 }
 
 /// A layout on the host and on the device.
-struct Layout {
-    host: BatchLayout,
-    table: Buffer<u32>,
+pub(super) struct Layout {
+    pub host: BatchLayout,
+    pub table: Buffer<u32>,
 }
 
 impl Layout {
-    fn new(gpu: &Gpu, host: BatchLayout) -> Self {
+    pub fn new(gpu: &Gpu, host: BatchLayout) -> Self {
         let table = Buffer::from_slice(gpu, &host.words());
         Layout { host, table }
     }
@@ -52,7 +54,8 @@ impl Layout {
 impl Fused {
     /// None if a layer is not dense or too wide, or what a minibatch needs too large for the device.
     pub fn new(gpu: &Gpu, networks: &[Network], size: EngineSize) -> Option<Self> {
-        let layers = networks.iter().map(dense).collect::<Option<Vec<_>>>()?;
+        let narrow = |network| dense(network).filter(|layers| layers.iter().all(is_narrow));
+        let layers = networks.iter().map(narrow).collect::<Option<Vec<_>>>()?;
         let sums = size.extras - size.others(networks);
         let layout = BatchLayout::new(&layers, size.parameters, sums, size.minibatch)?;
         let forward = layout.clone().with_rows(size.max_rows.clamp(1, AT_ONCE));
@@ -67,6 +70,7 @@ impl Fused {
         Some(Fused {
             networks: networks.len(),
             dims: dims(gpu, networks, size),
+            only_copy: Buffer::zeroed(gpu, forward.blocks().max(layout.blocks()).max(1)),
             rows: empty(rows),
             grads: empty(layout.numbers()),
             outputs: empty(outputs),
@@ -103,6 +107,7 @@ impl Fused {
                 &self.forward.table,
                 batch.values.buffer(),
                 parameters.buffer(),
+                &self.only_copy,
                 &self.rows,
                 out.buffer(),
                 &params,
@@ -135,6 +140,7 @@ impl Fused {
             table,
             samples,
             parameters,
+            &self.only_copy,
             activations,
             outputs,
             &params,
@@ -182,18 +188,24 @@ impl Fused {
     }
 }
 
-/// Inputs, outputs and activation of every layer, if all are dense and narrow.
-fn dense(network: &Network) -> Option<Vec<(usize, usize, u32)>> {
+/// Inputs, outputs and activation of a layer.
+pub(super) type DenseLayer = (usize, usize, u32);
+
+fn is_narrow(&(inputs, outputs, _): &DenseLayer) -> bool {
+    inputs.max(outputs) <= MAX_WIDTH
+}
+
+/// All layers, if they are dense.
+pub(super) fn dense(network: &Network) -> Option<Vec<DenseLayer>> {
     let layer = |params: &LayerParams| {
         let layer = &params.layer;
-        let (inputs, outputs) = (layer.patch(), layer.filters());
-        let narrow = layer.is_dense() && inputs.max(outputs) <= MAX_WIDTH;
         let activation = match layer.activation() {
             Activation::Relu => RELU,
             Activation::Tanh => TANH,
             Activation::Identity => IDENTITY,
         };
-        narrow.then_some((inputs, outputs, activation))
+        let sizes = (layer.patch(), layer.filters(), activation);
+        layer.is_dense().then_some(sizes)
     };
     // An encoder's layers do not follow each other: the vector joins in between.
     let layers = network.layers().iter().map(layer);

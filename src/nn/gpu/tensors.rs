@@ -2,7 +2,7 @@
 
 use crate::gpu::tensor::{from_buffer, to_buffer};
 use crate::gpu::{Array, Gpu};
-use burn::tensor::{Int, Tensor};
+use burn::tensor::Tensor;
 use std::ops::Range;
 
 /// Numbers summed by one invocation: lavapipe's stop, silently, after 65,535.
@@ -45,14 +45,6 @@ fn all(gpu: &Gpu, values: &Array) -> Tensor<1> {
 
 fn rows(gpu: &Gpu, values: &Array, width: usize) -> Tensor<2> {
     from_buffer(gpu, values.buffer(), [values.len() / width, width])
-}
-
-/// See [`crate::nn::rows::pick`].
-pub fn pick(gpu: &Gpu, from: &Array, width: usize, numbers: &[u32]) -> Array {
-    let numbers: Vec<i32> = numbers.iter().map(|&row| row as i32).collect();
-    let all = rows(gpu, from, width);
-    let numbers = Tensor::<1, Int>::from_data(&numbers[..], &all.device());
-    Array::Gpu(to_buffer(all.select(0, numbers).flatten::<1>(0, 1)))
 }
 
 /// See [`crate::nn::rows::beside`].

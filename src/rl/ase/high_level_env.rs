@@ -6,6 +6,7 @@ use crate::container::{Section, SectionError};
 use crate::env::{EnvSpec, Transition, VecEnv};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::style_windows;
+use crate::nn::rows;
 use crate::rl::amp::style;
 use crate::rl::step_columns::StepColumns;
 use anyhow::Result;
@@ -25,7 +26,7 @@ pub struct HighLevelEnv {
     low_level: BatchLowLevel,
     /// `[rows][action]` of the body.
     action: Array,
-    /// `[rows][observation]` before and after the present step.
+    /// `[rows][observation]` before and after the present step; between decisions `before` is what is observed now.
     before: Array,
     after: Array,
     /// The moments before and after the present step, `[rows][2 style]`.
@@ -39,17 +40,19 @@ impl HighLevelEnv {
     /// # Errors
     /// The low level is of another body, or the device has no room for it.
     pub fn new(
-        inner: Box<dyn VecEnv>,
+        mut inner: Box<dyn VecEnv>,
         low_level: &FrozenLowLevel,
         device: &Device,
     ) -> Result<Self> {
         let body = *inner.spec();
         let (rows, observation) = (body.rows(), body.observation.dim());
         let spec = low_level.steered(&body).map_err(anyhow::Error::msg)?;
+        let mut before = Array::zeroed(device, rows * observation);
+        inner.observe(&mut before, 0);
         Ok(HighLevelEnv {
             low_level: BatchLowLevel::new(low_level, device, rows)?,
             action: Array::zeroed(device, rows * body.action),
-            before: Array::zeroed(device, rows * observation),
+            before,
             after: Array::zeroed(device, rows * observation),
             windows: Array::zeroed(device, rows * 2 * body.style),
             step: StepColumns::new(device, rows, observation),
@@ -107,11 +110,10 @@ impl VecEnv for HighLevelEnv {
     }
 
     fn observe(&mut self, out: &mut Array, at: usize) {
-        self.inner.observe(out, at);
+        rows::replace(&self.device, out, at, &self.before);
     }
 
     fn step(&mut self, action: &Array, at: usize, mut out: Transition) {
-        self.inner.observe(&mut self.before, 0);
         for step in 0..STEPS_PER_DECISION {
             self.play(action, at);
             let share = 1.0 / STEPS_PER_DECISION as f32;
@@ -134,6 +136,8 @@ impl VecEnv for HighLevelEnv {
     }
 
     fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
-        self.inner.load(from)
+        self.inner.load(from)?;
+        self.inner.observe(&mut self.before, 0);
+        Ok(())
     }
 }

@@ -24,7 +24,7 @@ pub use high_level_env::HighLevelEnv;
 pub use latent_draw::LatentDraw;
 pub use latent_driver::LatentDriver;
 pub use latent_env::LatentEnv;
-pub use scripted_driver::{Script, ScriptedDriver, Stride};
+pub use scripted_driver::{Script, ScriptedDriver};
 use serde::{Deserialize, Serialize};
 
 /// Steps of the low level that a decision of a high level lasts.

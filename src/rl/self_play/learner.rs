@@ -1,6 +1,6 @@
 //! A learner whose policy joins the pool of its opponents when it wins.
 
-use super::pool::{BoutResult, Pool};
+use super::pool::{BoutResults, Pool};
 use super::{Opponent, SelfPlay, SelfPlayEnv};
 use crate::container::{Section, SectionError};
 use crate::env::EnvBatch;
@@ -19,8 +19,6 @@ pub struct SelfPlayLearner {
     scripted: Vec<Opponent>,
     /// Steps of an update.
     rollout_length: usize,
-    /// Numbers of an observation and of an action.
-    dims: [usize; 2],
     /// Names of metrics that are fractions of the episodes' steps, and of the statistics that count these steps.
     fractions: &'static [(&'static str, &'static str)],
 }
@@ -42,14 +40,12 @@ impl SelfPlayLearner {
         if !envs.parts.iter().all(|part| of_self_play(&**part)) {
             bail!("a learner by self-play takes environments of self-play");
         }
-        let spec = envs.spec();
         Ok(SelfPlayLearner {
             pool: Pool::new(config, scripted.clone(), inner.policy()?),
             config: *config,
             inner,
             scripted,
             rollout_length,
-            dims: [spec.observation.dim(), spec.action],
             fractions,
         })
     }
@@ -84,9 +80,9 @@ fn fighters(envs: &mut EnvBatch) -> impl Iterator<Item = &mut SelfPlayEnv> {
 impl Algorithm for SelfPlayLearner {
     fn iterate(&mut self, envs: &mut EnvBatch, steps: u64) -> Result<Iteration> {
         let opponents = Arc::new(self.pool.opponents());
-        fighters(envs).for_each(|part| part.set_opponents(&opponents));
+        fighters(envs).try_for_each(|part| part.set_opponents(&opponents))?;
         let mut iteration = self.inner.iterate(envs, steps)?;
-        let results: Result<Vec<Vec<BoutResult>>> =
+        let results: Result<Vec<Vec<BoutResults>>> =
             fighters(envs).map(SelfPlayEnv::take_results).collect();
         let results = results?.concat();
         self.pool.end_update(self.rollout_length, &results);
@@ -103,7 +99,10 @@ impl Algorithm for SelfPlayLearner {
 
     fn start_from(&mut self, policy: &Policy, section: &mut Section) -> Result<(), SectionError> {
         self.inner.start_from(policy, section)?;
-        self.pool = Pool::new(&self.config, self.scripted.clone(), policy.clone());
+        // What it begins with may observe less than the policy of this training.
+        let own = self.inner.policy();
+        let own = own.map_err(|error| SectionError(error.to_string()))?;
+        self.pool = Pool::new(&self.config, self.scripted.clone(), own);
         Ok(())
     }
 
@@ -115,9 +114,7 @@ impl Algorithm for SelfPlayLearner {
     }
 
     fn load(&mut self, from: &mut Section, policy: &Policy) -> Result<(), SectionError> {
-        let [observation, action] = self.dims;
-        self.pool
-            .load(&mut from.take_section("pool"), observation, action)?;
+        self.pool.load(&mut from.take_section("pool"))?;
         self.inner.load(from, policy)
     }
 }

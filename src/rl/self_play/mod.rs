@@ -2,16 +2,21 @@
 //!
 //! [`SelfPlay`] holds what may be chosen. A [`Pool`] keeps [opponents](Opponent) and how the learner fares against
 //! each; [`SelfPlayEnv`] makes environments of two agents into environments of one, whose other agent is played by
-//! one of them; and a [`SelfPlayLearner`] is any learner whose policy joins the pool when it wins.
+//! one of them, on their device; and a [`SelfPlayLearner`] is any learner whose policy joins the pool when it wins.
 
+mod batch_opponents;
+mod bouts;
+mod frozen_policies;
 mod learner;
 mod opponent;
+mod opponents;
 mod pool;
 mod self_play_env;
 
 pub use learner::SelfPlayLearner;
 pub use opponent::Opponent;
-pub use pool::{BoutResult, Opponents, Pool, PoolMember};
+pub use opponents::{Opponents, PoolMember};
+pub use pool::{BoutResults, Pool};
 pub use self_play_env::SelfPlayEnv;
 use serde::{Deserialize, Serialize};
 

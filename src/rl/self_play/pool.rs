@@ -1,55 +1,21 @@
 //! The opponents of a training, and how the learner fares against them.
 
+use super::opponents::{Opponents, PoolMember};
 use super::{Opponent, SelfPlay};
 use crate::container::{Section, SectionError};
-use crate::kernels::rng::uniform01;
 use crate::nn::Policy;
 use anyhow::Result;
 use std::sync::Arc;
 
-/// Least weight of an opponent that is to be drawn.
-const LEAST_WEIGHT: f64 = 0.05;
-
-/// An opponent, and the bouts against it, of which earlier ones count less.
-#[derive(Clone)]
-pub struct PoolMember {
-    /// Number of the opponent, from 0 in the order of joining.
-    pub id: u32,
-    /// Who plays.
-    pub opponent: Arc<Opponent>,
-    /// Bouts.
-    pub games: f64,
-    /// Bouts that the learner won; a draw is half of one.
-    pub wins: f64,
-}
-
-impl PoolMember {
-    fn new(id: u32, opponent: Opponent) -> PoolMember {
-        PoolMember {
-            id,
-            opponent: Arc::new(opponent),
-            games: 0.0,
-            wins: 0.0,
-        }
-    }
-
-    /// How much it is to be drawn: the fraction of bouts that the learner does not win, or a little if it wins all: else
-    /// nobody would find out that it has forgotten how. Who has not been met yet is drawn as if it always won.
-    pub fn weight(&self) -> f64 {
-        match self.games > 0.0 {
-            true => (1.0 - self.wins / self.games).max(LEAST_WEIGHT),
-            false => 1.0,
-        }
-    }
-}
-
-/// How a bout ended.
+/// How bouts against an opponent ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoutResult {
+pub struct BoutResults {
     /// Number of the opponent.
     pub opponent: u32,
-    /// 1 for the learner's win, 0 for its loss, half for a draw.
-    pub score: f32,
+    /// Bouts.
+    pub games: u32,
+    /// Bouts that the learner won; a draw is half of one.
+    pub wins: f64,
 }
 
 /// The opponents of a training.
@@ -105,7 +71,7 @@ impl Pool {
 
     /// Takes in the bouts that ended in an update of so many steps. Those against opponents that have left count for
     /// nothing.
-    pub fn end_update(&mut self, steps: usize, results: &[BoutResult]) {
+    pub fn end_update(&mut self, steps: usize, results: &[BoutResults]) {
         let kept = self.config.decay.powi(steps as i32);
         for member in &mut self.members {
             member.games *= kept;
@@ -114,9 +80,9 @@ impl Pool {
         for result in results {
             let mut members = self.members.iter_mut();
             if let Some(member) = members.find(|member| member.id == result.opponent) {
-                member.games += 1.0;
-                member.wins += f64::from(result.score);
-                self.games += 1;
+                member.games += f64::from(result.games);
+                member.wins += result.wins;
+                self.games += u64::from(result.games);
             }
         }
         self.updates += 1;
@@ -180,17 +146,11 @@ impl Pool {
         Ok(())
     }
 
-    /// Puts back what [`Pool::save`] saved of a pool with the same scripts, of opponents that act on so many numbers by
-    /// so many.
+    /// Puts back what [`Pool::save`] saved of a pool with the same scripts, and policies of the form of this one's.
     ///
     /// # Errors
     /// It is not that, or of another pool.
-    pub fn load(
-        &mut self,
-        from: &mut Section,
-        observation: usize,
-        action: usize,
-    ) -> Result<(), SectionError> {
+    pub fn load(&mut self, from: &mut Section) -> Result<(), SectionError> {
         let ids: Vec<u32> = from.get("members")?;
         let (scripted, room) = (from.get::<usize>("scripted")?, self.config.pool);
         if scripted != self.scripted || !(1..=room).contains(&ids.len().saturating_sub(scripted)) {
@@ -221,7 +181,7 @@ impl Pool {
             let own = &mut from.take_section(&format!("member-{id}"));
             let opponent = match self.members.get(id as usize) {
                 Some(member) if (id as usize) < scripted => member.opponent.clone(),
-                _ => Arc::new(frozen(own, observation, action)?),
+                _ => Arc::new(self.frozen(own)?),
             };
             Ok(PoolMember {
                 id,
@@ -233,71 +193,19 @@ impl Pool {
         self.members = members.collect::<Result<_, SectionError>>()?;
         Ok(())
     }
-}
 
-/// Reads a policy that acts on so many numbers by so many.
-fn frozen(from: &mut Section, observation: usize, action: usize) -> Result<Opponent, SectionError> {
-    let policy = Policy::load(from)?;
-    match (policy.observation().dim(), policy.action()) == (observation, action) {
-        true => Ok(Opponent::Frozen(Box::new(policy))),
-        false => Err(SectionError(
-            "an opponent is of environments with other dimensions".into(),
-        )),
-    }
-}
-
-/// The opponents who may be drawn while a rollout is played.
-pub struct Opponents {
-    members: Vec<PoolMember>,
-    /// How many of them, the first, are scripted.
-    scripted: usize,
-    /// Fraction of the bouts against these.
-    share: f64,
-}
-
-impl Opponents {
-    /// One alone: the first of every pool.
-    pub fn only(first: Opponent) -> Opponents {
-        Opponents {
-            members: vec![PoolMember::new(0, first)],
-            scripted: 1,
-            share: 1.0,
+    /// Reads a policy of the form of those that there are.
+    fn frozen(&self, from: &mut Section) -> Result<Opponent, SectionError> {
+        let policy = Policy::load(from)?;
+        let mut own = self
+            .members
+            .iter()
+            .filter_map(|member| member.opponent.policy());
+        match own.all(|own| policy.has_form_of(own)) {
+            true => Ok(Opponent::Frozen(Box::new(policy))),
+            false => Err(SectionError(
+                "an opponent is of other networks, or of environments with other dimensions".into(),
+            )),
         }
     }
-
-    /// All of them.
-    pub fn iter(&self) -> impl Iterator<Item = &Opponent> {
-        self.members.iter().map(|member| &*member.opponent)
-    }
-
-    /// The index of an opponent by its number; of the newest, if it has left.
-    pub fn index(&self, id: u32) -> usize {
-        let found = self.members.iter().position(|member| member.id == id);
-        found.unwrap_or(self.members.len() - 1)
-    }
-
-    /// The number of the opponent that random `bits` draw: a scripted one or a policy, and of these by their weights.
-    pub fn draw(&self, bits: u32) -> u32 {
-        let (scripted, policies) = self.members.split_at(self.scripted);
-        let share = match (scripted.is_empty(), policies.is_empty()) {
-            (true, _) => 0.0,
-            (_, true) => 1.0,
-            _ => self.share,
-        };
-        let part = f64::from(uniform01(bits));
-        match part < share {
-            true => by_weight(scripted, part / share),
-            false => by_weight(policies, (part - share) / (1.0 - share)),
-        }
-    }
-}
-
-/// The number of one of some opponents, who are not none, at a `part` of the sum of their weights.
-fn by_weight(members: &[PoolMember], part: f64) -> u32 {
-    let mut left = part * members.iter().map(PoolMember::weight).sum::<f64>();
-    let drawn = members.iter().find(|member| {
-        left -= member.weight();
-        left < 0.0
-    });
-    drawn.unwrap_or(&members[members.len() - 1]).id
 }

@@ -1,6 +1,7 @@
 //! Refuses choices that cannot work, whatever the task.
 
 use super::{Config, ConfigError};
+use crate::kernels::self_play::group_bouts::MAX_POLICIES;
 use crate::rl::amp::{Amp, DiscriminatorLoss};
 use crate::rl::ase::Ase;
 use crate::rl::ppo::Ppo;
@@ -143,7 +144,7 @@ pub(in crate::train) fn check_ase(ase: &Ase) -> Result<(), ConfigError> {
 }
 
 fn check_self_play(chosen: &SelfPlay) -> Result<(), ConfigError> {
-    within("self_play.pool", chosen.pool, 1, 64)?;
+    within("self_play.pool", chosen.pool, 1, MAX_POLICIES)?;
     within("self_play.scripted", chosen.scripted, 0.0, 1.0)?;
     within("self_play.win_rate", chosen.win_rate, 0.0, 1.0)?;
     within("self_play.games", chosen.games, 0, 1_000_000_000)?;

@@ -71,17 +71,28 @@ pub struct Mistake {
     pub problem: String,
 }
 
+/// A key by which two tables differ.
+pub struct Difference {
+    /// With the tables it stands in, like `ppo.envs`.
+    pub key: String,
+    /// Whether both tables have it.
+    pub in_both: bool,
+}
+
 /// The first key whose values differ, or that only one table has.
-pub fn different(one: &toml::Table, other: &toml::Table, within: &str) -> Option<String> {
+pub fn different(one: &toml::Table, other: &toml::Table, within: &str) -> Option<Difference> {
     let keys = one.keys().chain(other.keys());
     keys.filter(|&key| one.get(key) != other.get(key))
-        .find_map(|key| {
-            let full = format!("{within}{key}");
-            match (one.get(key), other.get(key)) {
+        .find_map(|name| {
+            let key = format!("{within}{name}");
+            match (one.get(name), other.get(name)) {
                 (Some(toml::Value::Table(one)), Some(toml::Value::Table(other))) => {
-                    different(one, other, &format!("{full}."))
+                    different(one, other, &format!("{key}."))
                 }
-                _ => Some(full),
+                (one, other) => Some(Difference {
+                    key,
+                    in_both: one.is_some() && other.is_some(),
+                }),
             }
         })
 }

@@ -182,18 +182,16 @@ impl<T: MotionTask> MotionTraining<T> {
 
     /// The opponents whom nobody has trained.
     fn scripted_opponents(&self, envs: &EnvBatch) -> Vec<Opponent> {
-        let width = envs.spec().observation.dim();
         let Some(low_level) = &self.low_level else {
-            return vec![Opponent::repeating(envs.rest_action(), width)];
+            return vec![Opponent::repeating(envs.rest_action())];
         };
         let scripts = self.scripts(low_level).into_iter();
-        // Latents that change at random are the untrained policy's.
-        let scripts = scripts.filter(|(_, script)| !matches!(script, Script::Random(..)));
-        let opponent = |script: Script| {
-            let rule = move |seen: &[f32]| script.latents(seen, width).unwrap_or_default();
-            Opponent::Scripted(Arc::new(rule))
+        let opponent = |(_, script)| match script {
+            Script::Strides(strides) => Some(Opponent::Scripted(strides)),
+            // Latents that change at random are the untrained policy's.
+            Script::Random(..) => None,
         };
-        scripts.map(|(_, script)| opponent(script)).collect()
+        scripts.filter_map(opponent).collect()
     }
 }
 

@@ -130,6 +130,12 @@ const ABLATION: Ablation = Ablation {
     ],
 };
 
+/// The choices of a policy that acts itself. [`Preset::Paper`] has the published sizes and rates, but the observation
+/// of every preset: 105 numbers of the body, and 19 or 23 of the target. What was published are 223 and 15, or 19 with
+/// the joystick's directions. The paper does not say what the 223 are; ASE's code, which it builds on, observes of 15
+/// bodies in the heading frame the height of the root (1), positions of the others relative to it (42), rotations (6
+/// each), velocities and angular velocities (3 each). Of the target the paper lists a position, a rotation, a velocity
+/// and an angular velocity as 3, 4, 4 and 4 numbers; ASE's code has 3, 6, 3 and 3, which are as many.
 fn preset(chosen: Preset, punch: Punch) -> TaskPreset {
     TaskPreset {
         settings: table(&punch),

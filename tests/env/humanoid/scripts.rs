@@ -10,8 +10,9 @@ use footwork::motion::synthetic::{perform_boxing, perform_walk};
 use footwork::physics::motion_library::MotionLibrary;
 use footwork::physics::scenes;
 use footwork::rl::ase::{
-    Ase, FrozenLowLevel, LatentDraw, LowLevel, STEPS_PER_DECISION, Script, ScriptedDriver, Stride,
+    Ase, FrozenLowLevel, LatentDraw, LowLevel, STEPS_PER_DECISION, Script, ScriptedDriver,
 };
+use footwork::rl::strides::{Stride, Strides};
 use footwork::train::{anchors, low_level};
 use std::sync::Arc;
 
@@ -50,7 +51,7 @@ fn opposed(places: &[[f32; 2]]) -> Vec<f32> {
 fn who_advances_turns_to_its_opponent_and_goes_there() {
     let low_level = some_low_level();
     let stride = |axis, forward, turn| Stride {
-        latent: along(axis),
+        action: along(axis),
         forward,
         turn,
     };
@@ -62,7 +63,7 @@ fn who_advances_turns_to_its_opponent_and_goes_there() {
         stride(4, -0.8, 0.0),
     ];
     let target = BODY + OPPONENT;
-    let script = Script::Approach { target, strides };
+    let script = Script::Strides(Strides { target, strides });
     let driver = ScriptedDriver::new(&low_level, script, BODY + DIM);
     let mut state = DriverState::default();
     let places = [[3.0, 0.1], [0.1, 2.0], [-0.5, -2.0], [-3.0, 0.5]];
@@ -86,12 +87,12 @@ fn latents_are_kept_or_change_as_in_training() {
     let low_level = some_low_level();
     let seen = opposed(&[[1.0, 0.0]; 3]);
     let mut state = DriverState::default();
-    let keeps = ScriptedDriver::new(&low_level, Script::Keep(along(5)), BODY + DIM);
+    let keeps = ScriptedDriver::new(&low_level, Script::keep(along(5)), BODY + DIM);
     (0..40).for_each(|_| {
         keeps.act(&seen, &mut state);
     });
     assert_eq!(state.latents, along(5).repeat(3));
-    assert_eq!(Script::unsteered(LATENT), Script::Keep(along(0)));
+    assert_eq!(Script::unsteered(LATENT), Script::keep(along(0)));
     let ase = Ase {
         latent: LATENT,
         kept_steps: [4, 4],
@@ -139,16 +140,16 @@ fn anchors_are_found_among_the_clips() {
     let walk = per_clip.clips().next().unwrap().to_vec();
     // Who walks neither stands nor boxes.
     for (name, script) in &scripts[..2] {
-        assert!(*script != Script::Keep(walk.clone()), "{name}");
+        assert!(*script != Script::keep(walk.clone()), "{name}");
     }
-    let Script::Approach { target, strides } = &scripts[2].1 else {
+    let Script::Strides(Strides { target, strides }) = &scripts[2].1 else {
         panic!("{:?}", scripts[2]);
     };
     assert_eq!((*target, strides.len()), (BODY + OPPONENT, count));
     let fastest = strides
         .iter()
         .max_by(|a, b| a.forward.total_cmp(&b.forward));
-    assert_eq!(fastest.unwrap().latent, walk);
+    assert_eq!(fastest.unwrap().action, walk);
     assert!(
         (strides[0].forward - 1.4).abs() < 0.1,
         "{}",

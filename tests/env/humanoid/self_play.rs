@@ -12,7 +12,8 @@ use footwork::gpu::{Array, Device};
 use footwork::kernels::rng::random4;
 use footwork::nn::layer::Activation;
 use footwork::nn::{NetworkConfig, Policy};
-use footwork::rl::self_play::{BoutResult, Opponent, Pool, SelfPlay, SelfPlayEnv};
+use footwork::rl::self_play::{BoutResults, Opponent, Pool, SelfPlay, SelfPlayEnv};
+use std::ops::Range;
 use std::sync::Arc;
 
 const CPU: Device = Device::Cpu;
@@ -25,12 +26,16 @@ fn fighters() -> Box<dyn VecEnv> {
 }
 
 fn fighters_on(device: &Device) -> Box<dyn VecEnv> {
+    some_fighters(device, FIRST..FIRST + ENVS)
+}
+
+fn some_fighters(device: &Device, envs: Range<usize>) -> Box<dyn VecEnv> {
     let boxing = Boxing {
         rules: rules(0.3),
         ..Boxing::default()
     };
     let task = Arc::new(BoxingTask::new(&boxing, &LIBRARY, SEED));
-    open(device, task, FIRST..FIRST + ENVS, SEED).unwrap()
+    open(device, task, envs, SEED).unwrap()
 }
 
 fn self_play() -> SelfPlayEnv {
@@ -56,22 +61,44 @@ const SURE: f32 = -1e9;
 
 /// A pool of one who rests and two policies that do not hesitate.
 fn pool(envs: &dyn VecEnv) -> Pool {
+    pool_with(envs, SURE)
+}
+
+/// A pool of one who rests and two policies of such a standard deviation.
+fn pool_with(envs: &dyn VecEnv, log_std: f32) -> Pool {
     let resting = resting(envs);
-    let mut pool = Pool::new(&SelfPlay::default(), vec![resting], policy(envs, 1, SURE));
-    pool.admit(policy(envs, 2, SURE));
+    let mut pool = Pool::new(
+        &SelfPlay::default(),
+        vec![resting],
+        policy(envs, 1, log_std),
+    );
+    pool.admit(policy(envs, 2, log_std));
     pool
 }
 
 fn resting(envs: &dyn VecEnv) -> Opponent {
-    Opponent::repeating(envs.rest_action(), envs.spec().observation.dim())
+    Opponent::repeating(envs.rest_action())
+}
+
+/// What an opponent does that does not hesitate.
+fn act(opponent: &Opponent, row: &[f32]) -> Vec<f32> {
+    match opponent {
+        Opponent::Scripted(strides) => strides.choose(row).to_vec(),
+        Opponent::Frozen(policy) => policy.mean(row),
+    }
 }
 
 /// A policy of the smallest kind.
 fn tiny() -> Policy {
+    small(1)
+}
+
+/// One of a hidden layer of such a width.
+fn small(width: usize) -> Policy {
     let network = NetworkConfig {
         convolutions: Vec::new(),
         encoder_hidden: Vec::new(),
-        hidden: vec![1],
+        hidden: vec![width],
         activation: Activation::Relu,
     };
     let observation = ObservationSpec {
@@ -83,7 +110,7 @@ fn tiny() -> Policy {
 
 /// A pool of so many, all but one of whom never leave.
 fn pool_of(count: usize, chosen: &SelfPlay) -> Pool {
-    let scripted = (1..count).map(|number| Opponent::repeating(vec![number as f32], 1));
+    let scripted = (1..count).map(|number| Opponent::repeating(vec![number as f32]));
     Pool::new(chosen, scripted.collect(), tiny())
 }
 
@@ -141,7 +168,7 @@ fn the_learner_sees_its_fighter_and_the_opponents_move_the_others() {
     let (dim, width) = (inner.spec().observation.dim(), inner.spec().action);
     assert_eq!((envs.spec().agents, envs.spec().rows()), (1, ENVS));
     let pool = pool(&*inner);
-    envs.set_opponents(&Arc::new(pool.opponents()));
+    envs.set_opponents(&Arc::new(pool.opponents())).unwrap();
     let learner = policy(&*inner, 7, SURE);
     let (mut results, mut ended) = (Vec::new(), 0);
     for _ in 0..20 {
@@ -155,7 +182,7 @@ fn the_learner_sees_its_fighter_and_the_opponents_move_the_others() {
             let row = |row: usize| &all[row * dim..][..dim];
             let members = pool.members().iter();
             let opponent = members.clone().find(|member| member.id == bout[1]);
-            let theirs = opponent.unwrap().opponent.act(row(other), &[0], 0, 0);
+            let theirs = act(&opponent.unwrap().opponent, row(other));
             action[own * width..][..width].copy_from_slice(&learner.mean(row(own)));
             action[other * width..][..width].copy_from_slice(&theirs);
         }
@@ -180,13 +207,20 @@ fn the_learner_sees_its_fighter_and_the_opponents_move_the_others() {
         }
         results.extend(envs.take_results().unwrap());
     }
-    assert!(ended > ENVS && results.len() == ended, "{ended}");
+    let games = results.iter().map(|result| result.games);
+    assert!(
+        ended > ENVS && games.sum::<u32>() == ended as u32,
+        "{ended}"
+    );
     // Statistics are the learner's.
     let mut sums = Array::zeroed(&CPU, envs.stat_names().len());
     envs.stats(&mut sums);
     let [episodes, successes] = [sums.host()[0], sums.host()[1]];
-    let won = results.iter().filter(|result| result.score == 1.0).count();
-    assert_eq!((episodes, successes), (ended as f32, won as f32));
+    assert_eq!(episodes, ended as f32);
+    // A draw is half a win, and a lost bout is the opponent's success.
+    let wins: f64 = results.iter().map(|result| result.wins).sum();
+    let draws = 2.0 * (wins - f64::from(successes));
+    assert!((0.0..=f64::from(episodes - successes)).contains(&draws));
     envs.stats(&mut sums);
     assert!(sums.host().iter().all(|&sum| sum == 0.0));
 }
@@ -195,7 +229,7 @@ fn the_learner_sees_its_fighter_and_the_opponents_move_the_others() {
 fn sides_and_opponents_are_drawn_for_every_bout() {
     let mut envs = self_play();
     let pool = pool(&envs);
-    envs.set_opponents(&Arc::new(pool.opponents()));
+    envs.set_opponents(&Arc::new(pool.opponents())).unwrap();
     let rest = envs.rest_action().repeat(ENVS);
     let (mut sides, mut met) = ([0; 2], [0; 3]);
     for _ in 0..400 {
@@ -229,7 +263,7 @@ fn sides_and_opponents_are_drawn_for_every_bout() {
 fn self_play_goes_on_from_a_saved_state() {
     let mut original = self_play();
     let opponents = Arc::new(pool(&original).opponents());
-    original.set_opponents(&opponents);
+    original.set_opponents(&opponents).unwrap();
     let rest = original.rest_action().repeat(ENVS);
     for _ in 0..7 {
         step(&mut original, &rest);
@@ -238,7 +272,7 @@ fn self_play_goes_on_from_a_saved_state() {
     original.save(&mut section).unwrap();
     let mut restored = self_play();
     restored.load(&mut section.clone()).unwrap();
-    restored.set_opponents(&opponents);
+    restored.set_opponents(&opponents).unwrap();
     for _ in 0..12 {
         assert!(step(&mut original, &rest) == step(&mut restored, &rest));
     }
@@ -247,14 +281,14 @@ fn self_play_goes_on_from_a_saved_state() {
     assert!(self_play().load(&mut section).is_err());
 }
 
-/// Sides and opponents are the same; what is played is what the physics' rounding leaves of it.
+/// Sides and opponents are the same, and what these draw; what is played is what the physics' rounding leaves of it.
 #[test]
 fn self_play_on_a_gpu_is_that_on_the_cpu() {
     let (cpu, gpu) = (CPU, Device::from(gpu()));
-    let opponents = Arc::new(pool(&*fighters()).opponents());
+    let opponents = Arc::new(pool_with(&*fighters(), -3.0).opponents());
     let [one, other] = [&cpu, &gpu].map(|device| {
         let mut envs = SelfPlayEnv::new(fighters_on(device), device, FIRST, SEED).unwrap();
-        envs.set_opponents(&opponents);
+        envs.set_opponents(&opponents).unwrap();
         let played = play(device, &mut envs, 12, 1);
         let mut sums = Array::zeroed(device, envs.stat_names().len());
         envs.stats(&mut sums);
@@ -265,7 +299,8 @@ fn self_play_on_a_gpu_is_that_on_the_cpu() {
             sums.read(device).unwrap(),
         )
     });
-    assert!(one.1.len() > ENVS && one.1 == other.1);
+    let games: u32 = one.1.iter().map(|result| result.games).sum();
+    assert!(games > ENVS as u32 && one.1 == other.1, "{games}");
     assert_eq!((one.2, one.3[0]), (other.2, other.3[0]));
     let (one, other) = (one.0, other.0);
     assert_eq!((&one.ends, &one.groups), (&other.ends, &other.groups));
@@ -288,38 +323,45 @@ fn environments_of_one_agent_are_refused() {
     assert!(error.to_string().contains("two agents"), "{error}");
 }
 
-/// What is drawn depends on the environment's number, not on who else is asked.
+/// What opponents draw depends on the environment's number, not on who else is asked.
 #[test]
-fn opponents_act_together_as_one_by_one() {
-    let envs = fighters();
-    let (dim, width) = (envs.spec().observation.dim(), envs.spec().action);
-    let log_std = -1.5;
-    let opponent = Opponent::Frozen(Box::new(policy(&*envs, 4, log_std)));
-    let rows = 600;
-    let observation: Vec<f32> = (0..rows * dim)
-        .map(|at| random4(1, at as u32, 0, 0)[0] as f32 / u32::MAX as f32 - 0.5)
-        .collect();
-    let numbers: Vec<u32> = (0..rows as u32).map(|row| 3 * row + 1).collect();
-    let together = opponent.act(&observation, &numbers, 5, 6);
-    let alone: Vec<f32> = (observation.chunks_exact(dim).zip(&numbers))
-        .flat_map(|(row, &number)| opponent.act(row, &[number], 5, 6))
-        .collect();
-    same("actions", &together, &alone);
-    let mean = policy(&*envs, 4, SURE).mean(&observation);
-    let squares = together
-        .iter()
-        .zip(&mean)
-        .map(|(action, mean)| (action - mean).powi(2));
-    let variance = squares.sum::<f32>() / (rows * width) as f32;
-    assert!(
-        (variance.sqrt() / log_std.exp() - 1.0).abs() < 0.02,
-        "{variance}"
-    );
-    assert_ne!(together, opponent.act(&observation, &numbers, 5, 7));
+fn opponents_act_together_as_in_parts() {
+    let opponents = Arc::new(pool_with(&*fighters(), -1.5).opponents());
+    let middle = FIRST + 7;
+    let parts = [FIRST..FIRST + ENVS, FIRST..middle, middle..FIRST + ENVS];
+    let [all, first, second] = parts.map(|part| {
+        let (count, first) = (part.len(), part.start);
+        let mut envs = SelfPlayEnv::new(some_fighters(&CPU, part), &CPU, first, SEED).unwrap();
+        envs.set_opponents(&opponents).unwrap();
+        let rest = envs.rest_action().repeat(count);
+        (0..20)
+            .map(|_| step(&mut envs, &rest).seen)
+            .collect::<Vec<_>>()
+    });
+    for (step, all) in all.iter().enumerate() {
+        same(
+            "observation",
+            all,
+            &[&first[step][..], &second[step]].concat(),
+        );
+    }
 }
 
-fn result(opponent: u32, score: f32) -> BoutResult {
-    BoutResult { opponent, score }
+#[test]
+fn opponents_of_another_form_are_refused() {
+    let mut pool = pool_of(1, &SelfPlay::default());
+    pool.admit(small(2));
+    let error = self_play().set_opponents(&Arc::new(pool.opponents()));
+    assert!(error.unwrap_err().to_string().contains("one form"));
+}
+
+/// A bout.
+fn result(opponent: u32, wins: f64) -> BoutResults {
+    BoutResults {
+        opponent,
+        games: 1,
+        wins,
+    }
 }
 
 #[test]
@@ -388,9 +430,9 @@ fn the_oldest_policy_leaves() {
     pool.admit(tiny());
     assert_eq!(ids(&pool), [0, 2, 3]);
     assert_eq!(pool.joined(), 4);
-    let opponents = pool.opponents();
     // Who has left is stood in for by the newest.
-    assert_eq!([0, 1, 2].map(|id| opponents.index(id)), [0, 2, 1]);
+    let table = pool.opponents().table(1, 1);
+    assert_eq!([0, 1, 2].map(|id| table.index(id)), [0, 2, 1]);
 }
 
 #[test]
@@ -413,11 +455,11 @@ fn opponents_are_drawn_by_how_often_they_are_not_beaten() {
     // Beaten always, in three of four, never; the last is not met.
     pool.end_update(0, &[won(0), won(1), won(1), won(1), lost(1), lost(2)]);
     let drawn = |pool: &Pool| {
-        let opponents = pool.opponents();
+        let table = pool.opponents().table(1, 1);
         let mut counts = [0.0f64; 4];
         for number in 0..10_000 {
             let [bits, ..] = random4(8, number, 0, 1);
-            counts[opponents.draw(bits) as usize] += 1e-4;
+            counts[table.drawn(bits)] += 1e-4;
         }
         counts
     };
@@ -438,7 +480,6 @@ fn opponents_are_drawn_by_how_often_they_are_not_beaten() {
 #[test]
 fn a_pool_is_what_it_was_when_saved() {
     let envs = fighters();
-    let [dim, width] = [envs.spec().observation.dim(), envs.spec().action];
     let mut original = pool(&*envs);
     original.end_update(3, &[result(1, 1.0), result(2, 0.5)]);
     let mut section = Section::default();
@@ -446,20 +487,20 @@ fn a_pool_is_what_it_was_when_saved() {
     let begun =
         |chosen: &SelfPlay| Pool::new(chosen, vec![resting(&*envs)], policy(&*envs, 3, 0.0));
     let mut restored = begun(&SelfPlay::default());
-    restored.load(&mut section.clone(), dim, width).unwrap();
+    restored.load(&mut section.clone()).unwrap();
     let mut again = Section::default();
     restored.save(&mut again).unwrap();
     assert!(section == again);
     // Of others, or of nothing, it is refused.
-    assert!(restored.load(&mut section.clone(), dim + 1, width).is_err());
-    assert!(restored.load(&mut section.clone(), dim, width + 1).is_err());
-    assert!(restored.load(&mut Section::default(), dim, width).is_err());
+    let mut other = Pool::new(&SelfPlay::default(), vec![resting(&*envs)], tiny());
+    assert!(other.load(&mut section.clone()).is_err());
+    assert!(restored.load(&mut Section::default()).is_err());
     let mut small = begun(&SelfPlay {
         pool: 1,
         ..SelfPlay::default()
     });
-    assert!(small.load(&mut section.clone(), dim, width).is_err());
+    assert!(small.load(&mut section.clone()).is_err());
     // So is one with other scripts.
     let mut other = pool_of(3, &SelfPlay::default());
-    assert!(other.load(&mut section, dim, width).is_err());
+    assert!(other.load(&mut section).is_err());
 }

@@ -1,9 +1,10 @@
 //! Oracle: layer after layer, output after output.
 
 use super::network::*;
+use crate::inputs::{Draw, POISON};
 use crate::support::forms::Forms;
 use footwork::kernels::learn::forward::Params;
-use footwork::kernels::learn::network::{BLOCK, BatchLayout, RELU, TANH};
+use footwork::kernels::learn::network::{BLOCK, BatchLayout, NO_COPY, RELU, TANH};
 
 /// The kernel for so many networks.
 macro_rules! evaluate {
@@ -17,12 +18,13 @@ macro_rules! evaluate {
                 layout: &Buffer<u32>,
                 samples: &Buffer<f32>,
                 parameters: &Buffer<f32>,
+                copies: &Buffer<u32>,
                 rows: &Buffer<f32>,
                 outputs: &Buffer<f32>,
                 params: &Params,
             ) {
                 footwork::kernels::learn::forward::launch(
-                    gpu, $networks, layout, samples, parameters, rows, outputs, params,
+                    gpu, $networks, layout, samples, parameters, copies, rows, outputs, params,
                 );
             }
 
@@ -30,12 +32,13 @@ macro_rules! evaluate {
                 layout: &BatchLayout,
                 samples: &[f32],
                 parameters: &[f32],
+                copies: &[u32],
                 rows: &mut [f32],
                 outputs: &mut [f32],
                 params: &Params,
             ) {
                 reference(
-                    $networks, layout, samples, parameters, rows, outputs, params,
+                    $networks, layout, samples, parameters, copies, rows, outputs, params,
                 );
             }
         }
@@ -49,10 +52,12 @@ fn reference(
     layout: &BatchLayout,
     samples: &[f32],
     parameters: &[f32],
+    copies: &[u32],
     rows: &mut [f32],
     outputs: &mut [f32],
     params: &Params,
 ) {
+    let copy = |row: usize| copies[row / BLOCK];
     let [count, start, width, first, mut to] = [
         params.rows,
         params.start,
@@ -65,7 +70,8 @@ fn reference(
     for network in first..first + networks {
         let layers = layout.network(network);
         let [inputs, _, _, observed, _] = layers[0].sizes();
-        for (row, column) in pairs(filled, inputs) {
+        let evaluated = |&(row, _): &(usize, usize)| copy(row) != NO_COPY;
+        for (row, column) in pairs(filled, inputs).filter(evaluated) {
             let value = if row < count {
                 samples[(start + row) * width + column]
             } else {
@@ -75,8 +81,9 @@ fn reference(
         }
         for (index, layer) in layers.iter().enumerate() {
             let [inputs, width, weights, input_col, output_col] = layer.sizes();
-            let (weights, biases) = parameters[weights..].split_at(inputs * width);
-            for (row, output) in pairs(filled, width) {
+            for (row, output) in pairs(filled, width).filter(evaluated) {
+                let own = copy(row) as usize * layout.head.parameters as usize;
+                let (weights, biases) = parameters[own + weights..].split_at(inputs * width);
                 let terms = (0..inputs).zip(weights[output..].iter().step_by(width));
                 let sum = terms.fold(biases[output], |sum, (input, weight)| {
                     sum + rows[layout.at(row, input_col + input)] * weight
@@ -101,8 +108,8 @@ fn pairs(rows: usize, columns: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..rows).flat_map(move |row| (0..columns).map(move |column| (row, column)))
 }
 
-/// Rows and outputs of both networks or of one of them.
-fn run(case: &Case, networks: usize, network: u32) -> Forms<(Vec<f32>, Vec<f32>)> {
+/// Rows and outputs of both networks or of one of them, every block by one of the copies of the parameters.
+fn run(case: &Case, copies: &[u32], networks: usize, network: u32) -> Forms<(Vec<f32>, Vec<f32>)> {
     let params = Params {
         rows: case.layout.head.rows,
         start: case.start,
@@ -119,12 +126,44 @@ fn run(case: &Case, networks: usize, network: u32) -> Forms<(Vec<f32>, Vec<f32>)
     match networks {
         1 => forms!(
             one, FORWARD, groups, params;
-            &case.layout => words, case.samples, case.parameters, mut case.rows, out len
+            &case.layout => words, case.samples, case.parameters, copies, mut case.rows, out len
         ),
         _ => forms!(
             both, FORWARD, groups, params;
-            &case.layout => words, case.samples, case.parameters, mut case.rows, out len
+            &case.layout => words, case.samples, case.parameters, copies, mut case.rows, out len
         ),
+    }
+}
+
+fn only_copy(case: &Case) -> Vec<u32> {
+    vec![0; case.layout.blocks()]
+}
+
+/// Of three copies, in blocks that belong to any or to none.
+#[test]
+fn copies_of_the_parameters_evaluate_their_blocks() {
+    for mut case in Case::all() {
+        let mut draw = Draw::new(case.count() as u32);
+        let others = draw.normals(2 * case.parameters.len());
+        case.parameters
+            .extend(others.iter().map(|value| 0.5 * value));
+        let copies = [0, 1, 2, NO_COPY];
+        let copies: Vec<u32> = (0..case.layout.blocks())
+            .map(|_| copies[draw.below(4)])
+            .collect();
+        let forms = run(&case, &copies, 1, 0);
+        let evaluated = |outputs: &[f32]| -> Vec<f32> {
+            let rows = outputs[3..].chunks_exact(ACTION).enumerate();
+            let rows = rows.filter(|(row, output)| {
+                let none = copies[row / BLOCK] == NO_COPY;
+                assert_eq!(*output == [POISON; ACTION], none, "row {row}");
+                !none
+            });
+            rows.flat_map(|(_, output)| output).copied().collect()
+        };
+        for (form, (_, outputs)) in forms.shaders() {
+            agree(form, &evaluated(outputs), &evaluated(&forms.twin.1));
+        }
     }
 }
 
@@ -132,7 +171,7 @@ fn run(case: &Case, networks: usize, network: u32) -> Forms<(Vec<f32>, Vec<f32>)
 fn forward_agrees() {
     for case in Case::all() {
         for (networks, network) in [(2, 0), (1, 0), (1, 1)] {
-            let forms = run(&case, networks, network);
+            let forms = run(&case, &only_copy(&case), networks, network);
             for (form, (rows, outputs)) in forms.shaders() {
                 agree(&format!("rows, {form}"), rows, &forms.twin.0);
                 agree(
@@ -140,7 +179,7 @@ fn forward_agrees() {
                     &outputs[3..],
                     &forms.twin.1[3..],
                 );
-                assert_eq!(outputs[..3], [crate::inputs::POISON; 3]);
+                assert_eq!(outputs[..3], [POISON; 3]);
             }
         }
     }
@@ -154,7 +193,7 @@ fn sums_of_any_size_are_activated() {
     let biases = (layer.weights + layer.inputs * layer.outputs) as usize;
     let extreme = [1e30, -1e30, f32::INFINITY, 20.0, -20.0, 0.0];
     case.parameters[biases..][..6].copy_from_slice(&extreme);
-    let forms = run(&case, 2, 0);
+    let forms = run(&case, &only_copy(&case), 2, 0);
     for (form, (rows, _)) in forms.shaders() {
         agree(form, rows, &forms.twin.0);
         let at = |output: usize| rows[case.layout.at(0, layer.output_col as usize + output)];

@@ -5,6 +5,7 @@ mod backward;
 mod discriminator;
 mod forward;
 mod gae;
+mod gather_rows;
 mod gather_samples;
 mod grad_norm;
 mod gradient;

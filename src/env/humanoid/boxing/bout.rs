@@ -1,22 +1,20 @@
 //! How a bout stands, step by step, for whoever watches it.
 
 use super::BoxingTask;
+use crate::env::VecEnv;
 use crate::env::humanoid::batch::SimulatedWorld;
 use crate::env::humanoid::task::{CpuHumanoidEnv, HumanoidTask};
-use crate::env::{Stats, VecEnv};
 use crate::kernels::humanoid::boxing_reward::leads;
 use crate::kernels::humanoid::boxing_state::{DAMAGE, KNOCKDOWNS};
 use crate::kernels::humanoid::fighters::FIGHTERS;
 use crate::physics::kinematics::kinematics;
+use crate::physics::model::{GeomShape, Model};
 use crate::physics::pose::Pose;
 use crate::physics::spatial::Spatial;
-use anyhow::Result;
 use glam::Vec3;
 
 /// Steps for which a strike is remembered: a fifth of a second.
 pub const REMEMBERED: u32 = 6;
-/// Radius of a hand, m.
-const HAND: f32 = 0.04;
 
 /// A hand on the other's torso or head.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,18 +95,18 @@ impl Bout {
 }
 
 /// What the bouts came to that have ended in an environment, the only one, since its statistics were last taken.
-///
-/// # Errors
-/// None: the environment is on the host.
-pub fn tally(env: &CpuHumanoidEnv) -> Result<Tally> {
-    let (names, sums) = (env.stat_names(), env.row_stats()?);
-    let rows = sums.chunks_exact(names.len());
-    let rows: Vec<Stats> = rows.map(|row| Stats::new(names, row)).collect();
-    let of = |name: &str| [0, 1].map(|fighter: usize| rows[fighter].sum(name) as u32);
-    Ok(Tally {
+pub fn tally(env: &CpuHumanoidEnv) -> Tally {
+    let (names, sums) = (env.stat_names(), env.row_stats());
+    let of = |name: &str| {
+        let stat = names.iter().position(|other| *other == name);
+        let both = stat.zip(sums.as_ref());
+        let both = both.map(|(stat, sums)| &sums.host()[stat * FIGHTERS..][..FIGHTERS]);
+        [0, 1].map(|fighter| both.map_or(0, |both| both[fighter] as u32))
+    };
+    Tally {
         won: of("successes"),
         knockdowns: of("knockdowns"),
-    })
+    }
 }
 
 /// The strikes of the last step.
@@ -120,11 +118,21 @@ fn strikes(task: &BoxingTask, world: &SimulatedWorld) -> Vec<Strike> {
     let forces = world.pair_forces(model.bodies.len());
     let hits = task.force_pairs().into_iter().zip(forces);
     let strikes = hits.map(|([hand, _], force)| Strike {
-        at: poses[hand].position + HAND * force.normalize_or_zero(),
+        at: poses[hand].position + radius(model, hand) * force.normalize_or_zero(),
         force: force.length(),
         age: 0,
     });
     strikes
         .filter(|strike| strike.force > task.boxing().blow_force)
         .collect()
+}
+
+/// Radius of a body that is a ball, m.
+fn radius(model: &Model, body: usize) -> f32 {
+    let mut shapes = model.geoms.iter().filter(|geom| geom.body == Some(body));
+    let ball = shapes.find_map(|geom| match geom.shape {
+        GeomShape::Sphere { radius } => Some(radius),
+        _ => None,
+    });
+    ball.unwrap_or(0.0)
 }

@@ -346,10 +346,13 @@ impl VecEnv for CpuHumanoidEnv {
         }
     }
 
-    fn row_stats(&self) -> Result<Vec<f32>> {
-        let sums = sums_at(self.common.measures);
-        let rows = self.episodes.iter().flat_map(|episode| &episode[sums..]);
-        Ok(rows.copied().collect())
+    fn row_stats(&self) -> Option<Array> {
+        let (sums, rows) = (sums_at(self.common.measures), self.episodes.len());
+        let mut stats = vec![0.0; self.stat_names().len() * rows];
+        for (row, episode) in self.episodes.iter().enumerate() {
+            scatter(&mut stats, rows, row, 0, &episode[sums..]);
+        }
+        Some(Array::Host(stats))
     }
 
     fn live_view(&mut self) -> Result<Option<LiveView>> {

@@ -8,7 +8,7 @@ use crate::env::humanoid::batch::{GpuSimulatorBatch, SimulatorBatch};
 use crate::env::live_view::LiveView;
 use crate::env::spec::EnvSpec;
 use crate::env::vec_env::{Transition, VecEnv};
-use crate::gpu::{Array, Buffer, Gpu};
+use crate::gpu::{Array, Buffer, Device, Gpu};
 use crate::kernels::humanoid::end_episode::{self, LIMIT, fields, sums_at};
 use crate::kernels::humanoid::{action_targets, draw_starts, episode_sums};
 use crate::kernels::physics::proprioception;
@@ -160,12 +160,11 @@ impl VecEnv for GpuHumanoidEnv {
         );
     }
 
-    fn row_stats(&self) -> Result<Vec<f32>> {
-        let (rows, stats) = (self.common.spec.rows(), self.stat_names().len());
-        let episodes = self.episodes.read(&self.worlds.gpu)?;
-        let sums = &episodes[sums_at(self.common.measures) * rows..];
-        let numbers = (0..rows * stats).map(|at| sums[at % stats * rows + at / stats]);
-        Ok(numbers.collect())
+    fn row_stats(&self) -> Option<Array> {
+        let rows = self.common.spec.rows();
+        let range = sums_at(self.common.measures) * rows..self.episodes.len();
+        let device = Device::from(self.worlds.gpu.clone());
+        Some(Array::Gpu(self.episodes.clone()).copy(&device, range))
     }
 
     fn live_view(&mut self) -> Result<Option<LiveView>> {
