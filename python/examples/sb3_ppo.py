@@ -7,6 +7,7 @@ import sys
 
 import numpy as np
 from stable_baselines3 import PPO
+from stable_baselines3.common.vec_env import VecNormalize
 
 import footwork
 from footwork.sb3 import SB3VecEnv
@@ -15,7 +16,8 @@ steps = int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000
 envs = footwork.make_vec("plane", num_envs=256, seed=1)
 model = PPO(
     "MlpPolicy",
-    SB3VecEnv(envs),
+    # The bonus for arriving is 1000.
+    VecNormalize(SB3VecEnv(envs), norm_obs=False, gamma=0.95),
     n_steps=16,
     batch_size=512,
     n_epochs=3,

@@ -42,7 +42,6 @@ pub fn autoreset(name: &str) -> PyResult<Autoreset> {
 impl Batch {
     #[new]
     #[pyo3(signature = (task, num_envs, seed, autoreset_mode, data=None, preset="fast", skills=None, settings=None))]
-    #[expect(clippy::too_many_arguments, reason = "Python's keyword arguments")]
     fn new(
         py: Python<'_>,
         task: &str,

@@ -96,7 +96,6 @@ impl Database {
 #[pyfunction]
 #[pyo3(signature = (path, *, unit=None, up=None, roles=None, trim=false, recursive=false, skip_bad=false,
     mirror=false, weights="paper"))]
-#[expect(clippy::too_many_arguments, reason = "Python's keyword arguments")]
 pub fn import_bvh(
     py: Python<'_>,
     path: PathBuf,

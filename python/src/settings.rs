@@ -6,7 +6,7 @@ use footwork::train::config::{Config, Preset};
 use footwork::train::task::TaskEntry;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use pyo3::types::{PyDict, PyList, PyTuple};
 use std::path::{Path, PathBuf};
 
 /// What is chosen besides the settings, which are keys of `config.toml`.
@@ -99,18 +99,18 @@ fn flatten(
 }
 
 fn toml_value(key: &str, value: &Bound<PyAny>) -> PyResult<toml::Value> {
-    // A bool is an int in Python.
-    if value.is_instance_of::<PyBool>() {
-        return Ok(value.extract::<bool>()?.into());
+    // A bool is an int in Python, and NumPy's numbers are as good as Python's.
+    if let Ok(value) = value.extract::<bool>() {
+        return Ok(value.into());
     }
-    if value.is_instance_of::<PyInt>() {
-        return Ok(value.extract::<i64>()?.into());
+    if let Ok(value) = value.extract::<i64>() {
+        return Ok(value.into());
     }
-    if value.is_instance_of::<PyFloat>() {
-        return Ok(value.extract::<f64>()?.into());
+    if let Ok(value) = value.extract::<f64>() {
+        return Ok(value.into());
     }
-    if value.is_instance_of::<PyString>() {
-        return Ok(value.extract::<String>()?.into());
+    if let Ok(value) = value.extract::<String>() {
+        return Ok(value.into());
     }
     if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
         let items = value.try_iter()?;

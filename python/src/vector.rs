@@ -380,8 +380,7 @@ fn open(opened: &Opened, envs: usize, seed: u32) -> Result<EnvBatch> {
 
 fn parts(batch: &EnvBatch) -> Vec<Part> {
     let mut first = 0;
-    let part = |envs: &Box<dyn VecEnv>| {
-        let spec = envs.spec();
+    let mut part = |spec: &EnvSpec| {
         let rows = spec.rows();
         let numbers = |count| Array::Host(vec![0.0; count]);
         first += rows;
@@ -395,5 +394,5 @@ fn parts(batch: &EnvBatch) -> Vec<Part> {
             final_observation: numbers(rows * spec.observation.dim()),
         }
     };
-    batch.parts.iter().map(part).collect()
+    batch.parts.iter().map(|envs| part(envs.spec())).collect()
 }

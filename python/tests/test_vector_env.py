@@ -173,8 +173,8 @@ def test_a_level_is_passed_by_success(make):
     assert make("plane", 2).level is None
 
 
-def test_a_folder_of_settings_like_config_toml(make):
-    envs = make("plane", 2, task={"max_steps": 3})
+def test_settings_are_those_of_config_toml(make):
+    envs = make("plane", 2, task={"max_steps": np.int64(3), "success_radius": np.float32(0.5)})
     envs.reset()
     *_, truncations, _ = play(envs, draws(envs), 3)[-1]
     assert truncations.all()

@@ -408,7 +408,7 @@ fn a_restart_begins_full_episodes_where_it_is_asked_for() {
     const ENVS: usize = 6;
     let which = [true, false, true, false, false, true];
     for device in [Device::Cpu, Device::from(gpu())] {
-        let mut envs = opened(&device, &short(0.32), 0..ENVS, 3);
+        let mut envs = opened(&device, &short(8.0 / 30.0), 0..ENVS, 3);
         let action = envs.rest_action().repeat(ENVS);
         let mut rollout = Rollout::new(&device, ENVS, 10);
         rollout.step(envs.as_mut(), &action);
