@@ -71,6 +71,16 @@ pub trait VecEnv: Any + Send {
         self.inner().and_then(VecEnv::row_stats)
     }
 
+    /// Begins new episodes, of full length, in the environments that `which`, `[envs]`, marks. What there was of the
+    /// old ones goes into no statistics.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn restart(&mut self, which: &[bool]) -> Result<()> {
+        self.inner_mut()
+            .map_or(Ok(()), |inner| inner.restart(which))
+    }
+
     /// Episodes that begin from now on are of this level of a [curriculum](super::curriculum).
     fn set_level(&mut self, level: u32) {
         if let Some(inner) = self.inner_mut() {

@@ -15,6 +15,12 @@ pub const LEADS: u32 = 4;
 /// The set of all of them; a set has the bit `1 << termination` for each.
 pub const ANY: u32 = u32::MAX;
 
+/// How a step would have ended so that new episodes begin where `which` says.
+pub fn restarted(which: &[bool]) -> Vec<u32> {
+    let end = |&restart: &bool| if restart { TRUNCATED } else { RUNNING };
+    which.iter().map(end).collect()
+}
+
 const _: () = assert!(
     wgsl::RUNNING == RUNNING
         && wgsl::SUCCESS == SUCCESS

@@ -17,6 +17,7 @@ use crate::kernels::locomotion::{
     advance_and_reward, build_query, episode_stats, hits, move_obstacles, observe,
     obstacle_collision, rasterize_maps, reset, spawn_obstacles,
 };
+use crate::kernels::termination::restarted;
 use crate::matching::MotionMatcher;
 use crate::motion::features::{ROW_STRIDE, TRAJECTORY_DIM};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -284,6 +285,19 @@ impl VecEnv for CpuLocomotion {
             out.host_mut(),
             &params,
         );
+    }
+
+    fn row_stats(&self) -> anyhow::Result<Vec<f32>> {
+        let envs = self.params.envs;
+        let row = |env| episode_stats::row(&self.state_f32, &self.state_u32, envs, env);
+        Ok((0..envs).flat_map(row).collect())
+    }
+
+    fn restart(&mut self, which: &[bool]) -> anyhow::Result<()> {
+        self.termination = restarted(which);
+        self.reset(false, 0);
+        self.params.step_counter += 1;
+        Ok(())
     }
 
     fn set_level(&mut self, level: u32) {

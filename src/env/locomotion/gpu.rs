@@ -15,6 +15,7 @@ use crate::kernels::locomotion::{
     advance_and_reward, build_query, episode_stats, hits, move_obstacles, observe,
     obstacle_collision, rasterize_maps, reset, spawn_obstacles,
 };
+use crate::kernels::termination::restarted;
 use crate::matching::MotionMatcher;
 use crate::matching::gpu::GpuSearch;
 use crate::motion::features::ROW_STRIDE;
@@ -245,6 +246,14 @@ impl VecEnv for GpuLocomotion {
             out.buffer(),
             &params,
         );
+    }
+
+    fn restart(&mut self, which: &[bool]) -> Result<()> {
+        let restarted = Buffer::from_slice(&self.gpu, &restarted(which));
+        self.params.offset = 0;
+        self.reset(&restarted, false, 0);
+        self.params.step_counter += 1;
+        Ok(())
     }
 
     fn set_level(&mut self, level: u32) {

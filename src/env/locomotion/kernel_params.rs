@@ -28,6 +28,8 @@ pub struct KernelParams {
     pub step_counter: u32,
     /// Level of the curriculum, from 0: new episodes are as hard as it says.
     pub level: u32,
+    /// Ends of episodes whose last observation is written, `1 << termination` each: those whose value goes on.
+    pub final_observations: u32,
     /// Where this step's rewards and terminations begin in the columns they are written to.
     pub offset: usize,
 }
@@ -43,6 +45,7 @@ impl KernelParams {
             seed: config.seed,
             step_counter: 0,
             level: config.level,
+            final_observations: config.task.bootstrap(),
             offset: 0,
         }
     }
@@ -151,10 +154,11 @@ impl KernelParams {
         }
     }
 
-    /// Observations of the environments whose episode this step ended and whose value goes on.
+    /// Observations of the environments whose episode this step ended, as one of
+    /// [`KernelParams::final_observations`].
     pub fn observe_final(&self, to: usize) -> observe::Params {
         observe::Params {
-            only: self.task.bootstrap(),
+            only: self.final_observations,
             ..self.observe(to)
         }
     }

@@ -200,6 +200,12 @@ pub fn end(step: &EpisodeStep, reward: &mut f32, episode: &mut [f32], params: &P
     end
 }
 
+/// Begins an episode, of which nothing has been played.
+pub fn begin(episode: &mut [f32], params: &Params) {
+    episode[..sums_at(params.measures as usize)].fill(0.0);
+    episode[LIMIT] = params.max_steps as f32;
+}
+
 /// Adds the episode to the sums and begins the next.
 fn finish(end: u32, success: bool, episode: &mut [f32], params: &Params) {
     let (running, sums) = episode.split_at_mut(sums_at(params.measures as usize));
@@ -213,6 +219,5 @@ fn finish(end: u32, success: bool, episode: &mut [f32], params: &Params) {
     ];
     let own = own.iter().chain(&running[RUNNING_FIELDS..]);
     sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
-    running.fill(0.0);
-    running[LIMIT] = params.max_steps as f32;
+    begin(episode, params);
 }

@@ -32,23 +32,34 @@ pub fn launch(
     );
 }
 
+/// The counts among the sums, in their order: fields of `state_u32`. The returns follow.
+const COUNTS: [usize; SUMS - 1] = [
+    state_u32::EPISODES,
+    state_u32::SUCCESSES,
+    state_u32::COLLISIONS,
+    state_u32::TRUNCATIONS,
+    state_u32::LENGTHS,
+];
+
 /// The shader's computation on the host.
 pub fn twin(state_f32: &mut [f32], state_u32: &mut [u32], sums: &mut [f32], params: &Params) {
     let envs = params.envs as usize;
-    let mut count = |field: usize| {
-        let part = &mut state_u32[field * envs..(field + 1) * envs];
-        let sum: u32 = part.iter().sum();
+    for (sum, field) in sums.iter_mut().zip(COUNTS) {
+        let part = &mut state_u32[field * envs..][..envs];
+        *sum = part.iter().sum::<u32>() as f32;
         part.fill(0);
-        sum as f32
-    };
-    let returns = &mut state_f32[state_f32::RETURNS * envs..(state_f32::RETURNS + 1) * envs];
-    sums[..SUMS].copy_from_slice(&[
-        count(state_u32::EPISODES),
-        count(state_u32::SUCCESSES),
-        count(state_u32::COLLISIONS),
-        count(state_u32::TRUNCATIONS),
-        count(state_u32::LENGTHS),
-        returns.iter().sum(),
-    ]);
+    }
+    let returns = &mut state_f32[state_f32::RETURNS * envs..][..envs];
+    sums[COUNTS.len()] = returns.iter().sum();
     returns.fill(0.0);
+}
+
+/// What one of `envs` environments adds to the sums.
+pub fn row(state_f32: &[f32], state_u32: &[u32], envs: usize, env: usize) -> [f32; SUMS] {
+    let mut sums = [0.0; SUMS];
+    for (sum, field) in sums.iter_mut().zip(COUNTS) {
+        *sum = state_u32[field * envs + env] as f32;
+    }
+    sums[COUNTS.len()] = state_f32[state_f32::RETURNS * envs + env];
+    sums
 }

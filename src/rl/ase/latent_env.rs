@@ -4,7 +4,7 @@ use super::LatentDraw;
 use crate::container::{Section, SectionError};
 use crate::env::{EnvSpec, ObservationSpec, Transition, VecEnv};
 use crate::gpu::{Array, Device};
-use crate::kernels::learn::advance_latents::{Params, launch, twin};
+use crate::kernels::learn::advance_latents::{Params, draw, launch, twin};
 use crate::nn::rows;
 use anyhow::Result;
 
@@ -71,16 +71,11 @@ impl LatentEnv {
         env
     }
 
-    /// Lets latents grow older by the step of a rollout, or draws all of them.
-    fn advance(
-        &mut self,
-        termination: &Array<u32>,
-        step: Option<usize>,
-        final_observation: &mut Array,
-    ) {
+    /// Parameters of the step of a rollout, or of none.
+    fn params(&self, step: Option<usize>) -> Params {
         let rows = self.spec.rows();
         let [least, most] = self.draw.kept_steps;
-        let params = Params {
+        Params {
             rows: rows as u32,
             first: self.first,
             seed: self.seed,
@@ -91,7 +86,17 @@ impl LatentEnv {
             most,
             opening: u32::from(step.is_none()),
             spread: self.draw.spread,
-        };
+        }
+    }
+
+    /// Lets latents grow older by the step of a rollout, or draws all of them.
+    fn advance(
+        &mut self,
+        termination: &Array<u32>,
+        step: Option<usize>,
+        final_observation: &mut Array,
+    ) {
+        let params = self.params(step);
         match &self.device {
             Device::Cpu => twin(
                 self.dims.host(),
@@ -160,6 +165,23 @@ impl VecEnv for LatentEnv {
         );
         self.step_counter += 1;
         self.advance(out.termination, Some(step), out.final_observation);
+    }
+
+    fn restart(&mut self, which: &[bool]) -> Result<()> {
+        self.inner.restart(which)?;
+        self.step_counter += 1;
+        let params = self.params(None);
+        let mut latents = self.latents.read(&self.device)?;
+        let mut steps_left = self.steps_left.read(&self.device)?;
+        let rows = latents.chunks_exact_mut(self.draw.dim).zip(&mut steps_left);
+        for (row, (latent, left)) in rows.enumerate() {
+            if which[row / self.spec.agents] {
+                *left = draw(self.first + row as u32, &self.draw.centres, latent, &params);
+            }
+        }
+        self.latents = Array::from_slice(&self.device, &latents);
+        self.steps_left = Array::from_slice(&self.device, &steps_left);
+        Ok(())
     }
 
     fn stat_names(&self) -> &'static [&'static str] {

@@ -155,6 +155,15 @@ impl VecEnv for SelfPlayEnv {
         None
     }
 
+    fn restart(&mut self, which: &[bool]) -> Result<()> {
+        self.inner.restart(which)?;
+        self.step_counter += 1;
+        for env in (0..which.len()).filter(|&env| which[env]) {
+            self.bouts[env] = self.draw(env);
+        }
+        Ok(())
+    }
+
     fn observe(&mut self, out: &mut Array, at: usize) {
         let dim = self.spec.observation.dim();
         let own = rows::gather(&self.device, &self.observation, dim, &self.bouts.own);

@@ -7,7 +7,7 @@ use crate::support::inputs::gpu;
 use footwork::container::Section;
 use footwork::env::humanoid::task::open;
 use footwork::env::{VecEnv, termination};
-use footwork::gpu::Device;
+use footwork::gpu::{Array, Device};
 use footwork::rl::ase::{Ase, LatentDraw, LatentEnv, LowLevel};
 
 const ROWS: usize = 9;
@@ -128,4 +128,25 @@ fn latents_of_clips_lie_about_their_clips() {
         (1.0 - mean(&shown) - spread).abs() < 0.3 * spread,
         "{spread}"
     );
+}
+
+#[test]
+fn a_restart_draws_latents_for_those_who_begin() {
+    for device in [Device::Cpu, Device::from(gpu())] {
+        let mut envs = opened(&device, LowLevel::Ase);
+        let width = envs.spec().observation.dim();
+        let latents = |envs: &mut LatentEnv| {
+            let mut seen = Array::zeroed(&device, ROWS * width);
+            envs.observe(&mut seen, 0);
+            split(&seen.read(&device).unwrap(), width, width - LATENT).1
+        };
+        let before = latents(&mut envs);
+        let which: Vec<bool> = (0..ROWS).map(|row| row % 2 == 0).collect();
+        envs.restart(&which).unwrap();
+        let after = latents(&mut envs);
+        for (row, &restarted) in which.iter().enumerate() {
+            let own = row * LATENT..(row + 1) * LATENT;
+            assert_eq!(after[own.clone()] != before[own], restarted);
+        }
+    }
 }

@@ -401,3 +401,38 @@ fn choices_that_cannot_be_played_are_refused() {
     let short: Stand = toml::from_str("episode_s = 5.0").unwrap();
     assert_eq!(short.rules.steps(), 150);
 }
+
+/// An episode begins with its full length, whatever was left of the one before; others go on.
+#[test]
+fn a_restart_begins_full_episodes_where_it_is_asked_for() {
+    const ENVS: usize = 6;
+    let which = [true, false, true, false, false, true];
+    for device in [Device::Cpu, Device::from(gpu())] {
+        let mut envs = opened(&device, &short(8.0 / 30.0), 0..ENVS, 3);
+        let action = envs.rest_action().repeat(ENVS);
+        let mut rollout = Rollout::new(&device, ENVS, 10);
+        rollout.step(envs.as_mut(), &action);
+        let seen = |envs: &mut dyn VecEnv| {
+            let mut seen = Array::zeroed(&device, ENVS * OBSERVATION);
+            envs.observe(&mut seen, 0);
+            seen.read(&device).unwrap()
+        };
+        let before = seen(envs.as_mut());
+        envs.restart(&which).unwrap();
+        let after = seen(envs.as_mut());
+        for (env, &restarted) in which.iter().enumerate() {
+            let row = env * OBSERVATION..(env + 1) * OBSERVATION;
+            assert_eq!(after[row.clone()] != before[row], restarted);
+        }
+        for _ in 0..8 {
+            rollout.step(envs.as_mut(), &action);
+        }
+        let ends = rollout.terminations();
+        for env in (0..ENVS).filter(|&env| which[env]) {
+            let ends: Vec<u32> = (1..9).map(|step| ends[step * ENVS + env]).collect();
+            let mut full = [termination::RUNNING; 8];
+            full[7] = termination::TRUNCATED;
+            assert_eq!(ends, full);
+        }
+    }
+}

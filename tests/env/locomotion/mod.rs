@@ -6,6 +6,7 @@ mod obstacles;
 mod parts;
 mod plane;
 mod player;
+mod restart;
 mod resumed;
 mod retain;
 mod threads;

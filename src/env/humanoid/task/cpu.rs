@@ -355,6 +355,23 @@ impl VecEnv for CpuHumanoidEnv {
         Some(Array::Host(stats))
     }
 
+    fn restart(&mut self, which: &[bool]) -> Result<()> {
+        self.common.step_counter += 1;
+        let (common, moment) = (&self.common, self.common.moment());
+        let episodes = self.episodes.chunks_exact_mut(common.spec.agents);
+        let worlds = self.batch.worlds.iter_mut().zip(&mut self.task_states);
+        for (env, ((world, state), episodes)) in worlds.zip(episodes).enumerate() {
+            if which[env] {
+                common.begin(env, &moment, world, state);
+                for episode in episodes {
+                    end_episode::begin(episode, &common.end_episode(0));
+                }
+            }
+        }
+        self.observe_all();
+        Ok(())
+    }
+
     fn live_view(&mut self) -> Result<Option<LiveView>> {
         let states = Arc::new(Mutex::new(BodyStates::default()));
         self.live_view = Some(states.clone());

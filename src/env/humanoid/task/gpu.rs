@@ -13,7 +13,8 @@ use crate::kernels::humanoid::end_episode::{self, LIMIT, fields, sums_at};
 use crate::kernels::humanoid::{action_targets, draw_starts, episode_sums};
 use crate::kernels::physics::proprioception;
 use crate::kernels::physics::solve_and_integrate::{warm_start_dim, warm_start_room, with_room};
-use crate::kernels::termination;
+use crate::kernels::physics::strided::{gather, scatter};
+use crate::kernels::termination::{self, restarted};
 use anyhow::Result;
 
 pub struct GpuHumanoidEnv {
@@ -165,6 +166,23 @@ impl VecEnv for GpuHumanoidEnv {
         let range = sums_at(self.common.measures) * rows..self.episodes.len();
         let device = Device::from(self.worlds.gpu.clone());
         Some(Array::Gpu(self.episodes.clone()).copy(&device, range))
+    }
+
+    fn restart(&mut self, which: &[bool]) -> Result<()> {
+        let (common, worlds) = (&mut self.common, &mut self.worlds);
+        let (rows, params) = (common.spec.rows(), common.end_episode(0));
+        let mut episodes = self.episodes.read(&worlds.gpu)?;
+        let mut own = vec![0.0; fields(common.measures)];
+        for row in (0..rows).filter(|row| which[row / common.spec.agents]) {
+            gather(&episodes, rows, row, 0, &mut own);
+            end_episode::begin(&mut own, &params);
+            scatter(&mut episodes, rows, row, 0, &own);
+        }
+        self.episodes = Buffer::from_slice(&worlds.gpu, &episodes);
+        worlds.ended = Buffer::from_slice(&worlds.gpu, &restarted(which));
+        common.step_counter += 1;
+        self.reset(&self.common.moment());
+        Ok(())
     }
 
     fn live_view(&mut self) -> Result<Option<LiveView>> {
