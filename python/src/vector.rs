@@ -277,14 +277,17 @@ impl Vector {
         let mut sums = vec![0.0; names];
         let mut drained = Array::Host(vec![0.0; names]);
         for (envs, part) in self.batch.parts.iter_mut().zip(&self.parts) {
-            let known = envs.row_stats()?;
+            let known = envs.row_stats();
             while let Some(&row) = ended.next_if(|row| part.rows.contains(row)) {
-                let own = known
-                    .chunks_exact(names)
-                    .nth(row - part.rows.start)
-                    .unwrap_or(&[]);
-                sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
-                step.stats.extend_from_slice(own);
+                let Some(known) = &known else {
+                    continue;
+                };
+                let own = known.host().iter().skip(row - part.rows.start);
+                let own = own.step_by(part.rows.len()).copied();
+                for (sum, own) in sums.iter_mut().zip(own) {
+                    *sum += own;
+                    step.stats.push(own);
+                }
             }
             envs.stats(&mut drained);
         }

@@ -287,10 +287,9 @@ impl VecEnv for CpuLocomotion {
         );
     }
 
-    fn row_stats(&self) -> anyhow::Result<Vec<f32>> {
-        let envs = self.params.envs;
-        let row = |env| episode_stats::row(&self.state_f32, &self.state_u32, envs, env);
-        Ok((0..envs).flat_map(row).collect())
+    fn row_stats(&self) -> Option<Array> {
+        let rows = episode_stats::rows(&self.state_f32, &self.state_u32, self.params.envs);
+        Some(Array::Host(rows))
     }
 
     fn restart(&mut self, which: &[bool]) -> anyhow::Result<()> {

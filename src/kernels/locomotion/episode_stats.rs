@@ -54,12 +54,12 @@ pub fn twin(state_f32: &mut [f32], state_u32: &mut [u32], sums: &mut [f32], para
     returns.fill(0.0);
 }
 
-/// What one of `envs` environments adds to the sums.
-pub fn row(state_f32: &[f32], state_u32: &[u32], envs: usize, env: usize) -> [f32; SUMS] {
-    let mut sums = [0.0; SUMS];
-    for (sum, field) in sums.iter_mut().zip(COUNTS) {
-        *sum = state_u32[field * envs + env] as f32;
-    }
-    sums[COUNTS.len()] = state_f32[state_f32::RETURNS * envs + env];
-    sums
+/// What each of `envs` environments adds to the sums, `[SUMS][envs]`.
+pub fn rows(state_f32: &[f32], state_u32: &[u32], envs: usize) -> Vec<f32> {
+    let counts = COUNTS
+        .iter()
+        .flat_map(|field| &state_u32[field * envs..][..envs]);
+    let counts = counts.map(|&count| count as f32);
+    let returns = &state_f32[state_f32::RETURNS * envs..][..envs];
+    counts.chain(returns.iter().copied()).collect()
 }

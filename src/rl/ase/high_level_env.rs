@@ -123,6 +123,12 @@ impl VecEnv for HighLevelEnv {
         }
     }
 
+    fn restart(&mut self, which: &[bool]) -> Result<()> {
+        self.inner.restart(which)?;
+        self.inner.observe(&mut self.before, 0);
+        Ok(())
+    }
+
     fn stat_names(&self) -> &'static [&'static str] {
         self.inner.stat_names()
     }

@@ -156,11 +156,9 @@ impl VecEnv for SelfPlayEnv {
     }
 
     fn restart(&mut self, which: &[bool]) -> Result<()> {
+        // Who plays whom stays.
         self.inner.restart(which)?;
-        self.step_counter += 1;
-        for env in (0..which.len()).filter(|&env| which[env]) {
-            self.bouts[env] = self.draw(env);
-        }
+        self.inner.observe(&mut self.observation, 0);
         Ok(())
     }
 
