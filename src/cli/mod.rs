@@ -7,6 +7,8 @@ mod compare;
 mod data;
 mod eval;
 #[cfg(feature = "viewer")]
+mod filming;
+#[cfg(feature = "viewer")]
 mod latents;
 #[cfg(feature = "viewer")]
 mod play;

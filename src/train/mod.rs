@@ -27,6 +27,8 @@ pub mod observer;
 pub mod planner;
 pub mod rendered_frames;
 pub mod run_dir;
+#[cfg(feature = "report")]
+pub mod snapshots;
 pub mod state;
 pub mod task;
 pub mod tasks;

@@ -4,7 +4,9 @@ use super::bout_scene::{flashes, ring};
 use super::scene::Scene;
 use crate::env::humanoid::boxing::BoxingTask;
 use crate::env::humanoid::boxing::bout::{Bout, tally};
-use crate::env::humanoid::task::CpuHumanoidEnv;
+use crate::env::humanoid::driver::BodyDriver;
+use crate::env::humanoid::task::{CpuHumanoidEnv, play};
+use crate::physics::motion_clip::MotionClip;
 use anyhow::Result;
 use std::sync::Arc;
 
@@ -50,4 +52,25 @@ impl RecordedBout {
         ring(scene, self.task.boxing().arena);
         flashes(scene, &self.at(frame).strikes);
     }
+}
+
+/// Records an episode of the only environment to its end, and what it was besides, if it was a bout of `bouts`.
+///
+/// # Errors
+/// None: the environment is on the host.
+pub fn recorded_episode(
+    env: &mut CpuHumanoidEnv,
+    driver: &dyn BodyDriver,
+    name: &str,
+    bouts: Option<Arc<BoxingTask>>,
+) -> Result<(MotionClip, Option<RecordedBout>)> {
+    let mut bout = bouts.map(RecordedBout::new);
+    let mut seen = Ok(());
+    let motion = play::record(env, driver, name, |env, running| {
+        if let (Some(bout), Ok(())) = (&mut bout, &seen) {
+            seen = bout.push(env, running);
+        }
+    });
+    seen?;
+    Ok((motion, bout))
 }

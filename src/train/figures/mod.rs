@@ -5,10 +5,14 @@ pub mod obstacles;
 pub mod plane;
 pub mod trajectories;
 
+use super::locomotion::Locomotion;
 use super::metrics::UpdateMetrics;
 use super::run_dir::RunDir;
+use crate::env::locomotion::LocomotionTask;
+use crate::nn::Policy;
 use crate::report::learning_curve::{self, Level, Point};
 use anyhow::Result;
+use std::path::{Path, PathBuf};
 
 /// The metrics as a curve shows them.
 pub fn points(rows: &[UpdateMetrics]) -> Vec<Point> {
@@ -41,11 +45,23 @@ pub fn level_marks(rows: &[UpdateMetrics]) -> Vec<Level> {
     marks.collect()
 }
 
-/// Draws `learning_curve.png` without marks.
+/// Draws `learning_curve.png` without marks. Returns the file.
 ///
 /// # Errors
 /// It cannot be written.
-pub fn draw_curve(run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
+pub fn draw_curve(run: &RunDir, rows: &[UpdateMetrics]) -> Result<Vec<PathBuf>> {
     let curve = run.file("learning_curve.png");
-    Ok(learning_curve::draw(&curve, &points(rows), &[], &[])?)
+    learning_curve::draw(&curve, &points(rows), &[], &[])?;
+    Ok(vec![curve])
+}
+
+/// Draws the walks of a policy after so many steps into a PNG file.
+///
+/// # Errors
+/// It cannot be written.
+pub fn draw_walks(of: &Locomotion, policy: &Policy, steps: u64, path: &Path) -> Result<()> {
+    match of.task {
+        LocomotionTask::Plane(_) => plane::draw_walks(of, policy, steps, path),
+        LocomotionTask::Obstacles(_) => obstacles::draw_walks(of, policy, path),
+    }
 }
