@@ -51,7 +51,7 @@
 //! - `rl`: rollouts, advantages, PPO (`train`);
 //! - `train`: tasks by name, configuration, run directory, checkpoints, evaluation (`train`);
 //! - `view`, `viewer`: scenes and the renderer that draws them; windows (`viewer`);
-//! - `bench`: what each device makes of each stage (`report` and `train`);
+//! - `bench`: what each device makes of each stage (`viewer`);
 //! - [`report`]: tables; pictures and TensorBoard events (feature `report`);
 //! - [`prelude`]: the names that most programs begin with;
 //! - [`container`]: the file format of databases and checkpoints; [`input_file`]: files that users name.
@@ -70,7 +70,7 @@
 #![warn(missing_docs, clippy::print_stdout, clippy::print_stderr)]
 #![allow(rustdoc::private_intra_doc_links)]
 
-#[cfg(all(feature = "report", feature = "train"))]
+#[cfg(feature = "viewer")]
 pub mod bench;
 pub mod container;
 #[cfg(feature = "train")]

@@ -1,7 +1,7 @@
 //! One file a subcommand, and what they share.
 
 mod ablate;
-#[cfg(feature = "report")]
+#[cfg(feature = "viewer")]
 mod bench;
 mod compare;
 mod data;
@@ -60,7 +60,7 @@ enum Command {
     /// Let simulated bodies move by random actions: throughput and statistics
     Sim(sim::Sim),
     /// Measure what each device makes of each stage
-    #[cfg(feature = "report")]
+    #[cfg(feature = "viewer")]
     Bench(bench::Bench),
     /// Import, synthesise and inspect motion
     #[command(subcommand)]
@@ -85,7 +85,7 @@ impl Command {
             #[cfg(feature = "viewer")]
             Command::Render(render) => render.run(),
             Command::Sim(sim) => sim.run(),
-            #[cfg(feature = "report")]
+            #[cfg(feature = "viewer")]
             Command::Bench(bench) => bench.run(),
             Command::Data(data) => data.run(),
         }

@@ -1,7 +1,7 @@
 //! Pictures of what policies do in their fixed episodes, made where checkpoints are kept: `pictures/walks`, the
 //! ways seen from above, and `pictures/film`, for which somebody must be there who can film.
 
-use super::figures::draw_walks;
+use super::figures::walks::draw_walks;
 use super::observer::Observer;
 use super::run_dir::{RunDir, name_at};
 use super::task::Task;

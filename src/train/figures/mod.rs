@@ -4,15 +4,13 @@
 pub mod obstacles;
 pub mod plane;
 pub mod trajectories;
+pub mod walks;
 
-use super::locomotion::Locomotion;
 use super::metrics::UpdateMetrics;
 use super::run_dir::RunDir;
-use crate::env::locomotion::LocomotionTask;
-use crate::nn::Policy;
 use crate::report::learning_curve::{self, Level, Point};
 use anyhow::Result;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The metrics as a curve shows them.
 pub fn points(rows: &[UpdateMetrics]) -> Vec<Point> {
@@ -53,15 +51,4 @@ pub fn draw_curve(run: &RunDir, rows: &[UpdateMetrics]) -> Result<Vec<PathBuf>> 
     let curve = run.file("learning_curve.png");
     learning_curve::draw(&curve, &points(rows), &[], &[])?;
     Ok(vec![curve])
-}
-
-/// Draws the walks of a policy after so many steps into a PNG file.
-///
-/// # Errors
-/// It cannot be written.
-pub fn draw_walks(of: &Locomotion, policy: &Policy, steps: u64, path: &Path) -> Result<()> {
-    match of.task {
-        LocomotionTask::Plane(_) => plane::draw_walks(of, policy, steps, path),
-        LocomotionTask::Obstacles(_) => obstacles::draw_walks(of, policy, path),
-    }
 }
