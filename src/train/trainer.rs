@@ -171,7 +171,9 @@ impl<'a> Loop<'a> {
             if self.steps >= config.steps {
                 return Ok("steps");
             }
-            if config.max_time_s.is_some_and(|max| self.wall_s() >= max) {
+            // As whoever resumes the run will see it.
+            let wall_s = self.rows.last().map_or(0.0, |row| row.wall_s);
+            if config.max_time_s.is_some_and(|max| wall_s >= max) {
                 return Ok("time");
             }
             if interrupted.load(Ordering::Relaxed) {
