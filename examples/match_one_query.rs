@@ -1,29 +1,49 @@
 //! One query of motion matching: which recorded frame goes on from a pose to walk straight ahead?
 //!
-//! `cargo run --release --no-default-features --example match_one_query -- FOLDER_OF_BVH_FILES`
+//! You learn what a query is made of, and how the nearest of all frames is found.
+//!
+//! `cargo run --release --no-default-features --example match_one_query [-- FOLDER_OF_BVH_FILES]`
 
-use anyhow::{Context, Result};
-use footwork::matching::MotionMatcher;
+use anyhow::Context;
 use footwork::motion::RATE;
-use footwork::motion::database::Database;
 use footwork::motion::features::{FRAMES_PER_STEP, POSE_DIM, TRAJECTORY_OFFSETS};
 use footwork::motion::import::{ImportOptions, import};
-use footwork::motion::normalise::Weights;
-use std::path::PathBuf;
+use footwork::prelude::*;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Requested speed, m/s.
 const SPEED: f32 = 1.2;
 
-fn main() -> Result<()> {
-    let folder = std::env::args_os().nth(1);
-    let folder = PathBuf::from(folder.context("usage: match_one_query FOLDER_OF_BVH_FILES")?);
-    let motion = import(&folder, &ImportOptions::default())?;
-    let database = Database::build(&motion.clips, motion.roles, Weights::PAPER)?;
+fn main() -> anyhow::Result<()> {
+    let (clips, roles) = match std::env::args_os().nth(1) {
+        Some(folder) => {
+            let motion = import(Path::new(&folder), &ImportOptions::default())?;
+            (motion.clips, motion.roles)
+        }
+        None => synthetic::perform(1, 4.0),
+    };
+    let database = Database::build(&clips, roles, Weights::PAPER)?;
     let MotionMatcher { database, index } = MotionMatcher::new(Arc::new(database));
 
-    // The pose of a recorded frame, and a position and a heading, both straight ahead, for each offset.
-    let shown = database.candidates[0];
+    // A frame of somebody who walks ahead, at 1 m/s or faster.
+    let at = |frame: usize| PlacedFrame {
+        frame,
+        at: [0.0; 2],
+        heading: [0.0, 1.0],
+    };
+    let speed = |frame: u32| {
+        let [_, z] = at(frame as usize)
+            .on(&database, FRAMES_PER_STEP as isize)
+            .at;
+        z * RATE / FRAMES_PER_STEP as f32
+    };
+    let mut frames = database.candidates.iter().copied();
+    let shown = frames.find(|&frame| speed(frame) >= 1.0);
+    let shown = shown.context("nobody walks")?;
+
+    // A query is the pose of the frame that is shown, and a position and a heading for each offset: here
+    // straight ahead. All of it is normalised.
     let mut query = database.features[shown as usize];
     let normal = &database.normalisation;
     for (part, ahead) in TRAJECTORY_OFFSETS.into_iter().enumerate() {
@@ -42,9 +62,10 @@ fn main() -> Result<()> {
         first - clip.first,
         nearest.distance
     );
-    for frame in first..=first + FRAMES_PER_STEP {
-        let [x, z, ..] = database.path[frame];
-        println!("frame {}: {x:.2}, {z:.2} m", frame - clip.first);
+    // From where the character is, facing +z, it goes on as in these frames.
+    for ahead in 1..=FRAMES_PER_STEP {
+        let [x, z] = at(first).on(&database, ahead as isize).at;
+        println!("after {ahead} frames: {x:.2}, {z:.2} m");
     }
     Ok(())
 }

@@ -16,19 +16,14 @@
 //!
 //! ```
 //! # #[cfg(feature = "train")] {
-//! use footwork::env::locomotion::{EnvConfig, LocomotionTask, Plane};
-//! use footwork::gpu::Device;
-//! use footwork::matching::MotionMatcher;
-//! use footwork::motion::{database::Database, normalise::Weights, synthetic};
-//! use footwork::rl::{Algorithm, ppo::PpoLearner};
-//! use footwork::train::{config::Preset, tasks};
+//! use footwork::prelude::*;
 //! use std::sync::Arc;
 //!
 //! let (clips, roles) = synthetic::perform(1, 1.0);
 //! let database = Database::build(&clips, roles, Weights::PAPER)?;
 //! let matcher = Arc::new(MotionMatcher::new(Arc::new(database)));
 //!
-//! let ppo = tasks::find("plane")?.config(Preset::Fast).ppo;
+//! let ppo = Ppo::default();
 //! let task = LocomotionTask::Plane(Plane::default());
 //! let config = EnvConfig { task, envs: ppo.envs, seed: 1, level: 0 };
 //! let mut envs = config.open(&Device::Cpu, &matcher)?;
@@ -59,9 +54,15 @@
 //! - `capi`: the same from C, for game engines (`capi`);
 //! - `view`, `viewer`: scenes and the renderer that draws them; windows (`viewer`);
 //! - `export`: policies, motion and models in files of other programs (`export`);
-//! - `bench`: what each device makes of each stage (`report` and `train`);
+//! - `bench`: what each device makes of each stage (`viewer`);
 //! - [`report`]: tables; pictures and TensorBoard events (feature `report`);
+//! - [`prelude`]: the names that most programs begin with;
 //! - [`container`]: the file format of databases and checkpoints; [`input_file`]: files that users name.
+//!
+//! # Examples
+//!
+//! In `examples/`, in the order in which to read them; none needs a file: `match_one_query`, `step_a_batch`,
+//! `train_tiny`, `drive_a_character`, `task_of_your_own`, `physics_of_your_own`.
 //!
 //! # Features
 //!
@@ -72,7 +73,7 @@
 #![warn(missing_docs, clippy::print_stdout, clippy::print_stderr)]
 #![allow(rustdoc::private_intra_doc_links)]
 
-#[cfg(all(feature = "report", feature = "train"))]
+#[cfg(feature = "viewer")]
 pub mod bench;
 #[cfg(feature = "capi")]
 pub mod capi;
@@ -90,6 +91,7 @@ pub mod motion;
 pub mod nn;
 pub mod physics;
 pub mod playback;
+pub mod prelude;
 pub mod report;
 #[cfg(feature = "train")]
 pub mod rl;

@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// Top-level modules from the roof to the ground; those of a line do not know each other.
 const ORDER: [&[&str]; 13] = [
-    &["cli", "capi"],
+    &["cli", "capi", "prelude"],
     &["viewer"],
     &["bench", "export"],
     &["view"],

@@ -1,16 +1,23 @@
 //! Whole trainings, short ones: they must learn, repeat bit for bit, go on after a stop as if there
 //! had been none, and leave the last good checkpoint alone when learning diverges.
 
+#[path = "support/events.rs"]
+mod events;
+
+use events::images;
 use footwork::env::locomotion::{LocomotionTask, Obstacles, Plane};
 use footwork::gpu::{Choice, Device};
 use footwork::matching::MotionMatcher;
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
 use footwork::motion::synthetic;
+use footwork::nn::Policy;
+use footwork::report::events::FILE_NAME;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Preset};
 use footwork::train::controller::Scripted;
 use footwork::train::evaluate::hardest;
+use footwork::train::observer::Observer;
 use footwork::train::planner::plan;
 use footwork::train::run_dir::{RunDir, Summary};
 use footwork::train::tasks::find;
@@ -51,6 +58,16 @@ impl Place {
 
     /// Trains on the configuration's own motion.
     fn train_on(&self, config: Config, device: Choice, run: &str) -> anyhow::Result<Summary> {
+        self.train_seen_by(config, device, run, &mut ())
+    }
+
+    fn train_seen_by(
+        &self,
+        config: Config,
+        device: Choice,
+        run: &str,
+        observer: &mut (dyn Observer + Send),
+    ) -> anyhow::Result<Summary> {
         let device = Device::open(device).expect("an adapter");
         let (entry, out) = (find(&config.task.name)?, self.path(run));
         let begun = out.exists();
@@ -65,7 +82,7 @@ impl Place {
             start: None,
         };
         let from = begun.then(|| self.last(run));
-        train(training, from, &AtomicBool::new(false), &mut ())
+        train(training, from, &AtomicBool::new(false), observer)
     }
 
     /// A run's last checkpoint.
@@ -342,4 +359,73 @@ fn faster_scripts_arrive_sooner_and_an_untrained_policy_hardly_ever() {
         .train(&config, Choice::Cpu, "run")
         .expect("a training");
     assert!(summary.evaluation.success < 0.5, "{summary:?}");
+}
+
+/// A camera whose every film is one grey pixel.
+struct Camera(usize);
+
+/// A whole GIF file.
+const PIXEL: &[u8] = b"GIF89a\x01\x00\x01\x00\x80\x00\x00\x80\x80\x80\x00\x00\x00,\x00\x00\x00\x00\x01\x00\x01\x00\x00\x02\x02D\x01\x00;";
+
+impl Observer for Camera {
+    fn film(&mut self, _: &Policy) -> anyhow::Result<Option<Vec<u8>>> {
+        self.0 += 1;
+        Ok(Some(PIXEL.to_vec()))
+    }
+}
+
+/// Pictures of the policies that are kept, and the figures of the end, are what TensorBoard shows; also after a
+/// training has gone on.
+#[test]
+fn pictures_of_policies_are_events() {
+    let place = Place::new(1.0);
+    let train = |steps: u64, film_share: f64| {
+        let mut config = Config {
+            checkpoint_every: 1024,
+            film_share,
+            ..small(steps)
+        };
+        config.data = Some(place.path("motion"));
+        let mut camera = Camera(0);
+        let trained = place.train_seen_by(config, Choice::Cpu, "run", &mut camera);
+        trained.expect("a training");
+        camera.0
+    };
+    let shown = || {
+        let file = place.path("run").join(FILE_NAME);
+        let found = images(&std::fs::read(file).expect("an event file"));
+        found
+            .into_iter()
+            .map(|one| {
+                if one.file.starts_with(b"GIF") {
+                    assert_eq!((&*one.file, one.size), (PIXEL, [1, 1]));
+                } else {
+                    let decoder = png::Decoder::new(std::io::Cursor::new(&one.file));
+                    let mut reader = decoder.read_info().expect("a PNG file");
+                    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+                    let info = reader.next_frame(&mut pixels).expect("a whole PNG file");
+                    assert_eq!(one.size, [info.width, info.height].map(u64::from));
+                }
+                (one.step, one.tag)
+            })
+            .collect::<Vec<_>>()
+    };
+    let kept = |steps: u64| ["film", "walks"].map(|of| (steps, format!("episodes/{of}")));
+    let curve = |steps: u64| (steps, "figures/learning_curve".to_string());
+
+    assert_eq!(train(2048, 1000.0), 2);
+    let mut found = shown();
+    found.sort();
+    let first = [kept(1024), kept(2048)].concat();
+    let mut wanted = [&first[..], &[curve(2048)]].concat();
+    wanted.sort();
+    assert_eq!(found, wanted);
+    // No film where films may take no time; those of before are still there.
+    assert_eq!(train(3072, 0.0), 0);
+    let mut found = shown();
+    found.sort();
+    let [_, walks] = kept(3072);
+    let mut wanted = [&first[..], &[walks, curve(3072)]].concat();
+    wanted.sort();
+    assert_eq!(found, wanted);
 }

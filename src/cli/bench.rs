@@ -2,6 +2,7 @@
 
 use super::Usage;
 use super::say::{say, show};
+use super::usage::writable;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use footwork::bench::{BenchPlan, Measurement, STAGES, run};
@@ -10,7 +11,7 @@ use footwork::report::scaling::{self, Curve, ScalingPanel};
 use footwork::report::table::table;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 #[derive(Args)]
@@ -82,20 +83,6 @@ impl Bench {
         }
         Ok(())
     }
-}
-
-/// Refuses impossible files before minutes of measuring are lost.
-pub fn writable(file: &Path) -> Result<()> {
-    let folder = match file.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
-    let why = match (file.is_dir(), folder.is_dir()) {
-        (true, _) => "it is a folder; give the name of a file in it",
-        (_, false) => "its folder must exist",
-        _ => return Ok(()),
-    };
-    Err(Usage(format!("{} cannot be written: {why}", file.display())).into())
 }
 
 fn shown(rows: &[Measurement]) -> String {

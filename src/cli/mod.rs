@@ -1,12 +1,14 @@
 //! One file a subcommand, and what they share.
 
 mod ablate;
-#[cfg(feature = "report")]
+#[cfg(feature = "viewer")]
 mod bench;
 mod compare;
 mod data;
 mod eval;
 mod export;
+#[cfg(feature = "viewer")]
+mod filming;
 #[cfg(feature = "viewer")]
 mod latents;
 #[cfg(feature = "viewer")]
@@ -61,7 +63,7 @@ enum Command {
     /// Let simulated bodies move by random actions: throughput and statistics
     Sim(sim::Sim),
     /// Measure what each device makes of each stage
-    #[cfg(feature = "report")]
+    #[cfg(feature = "viewer")]
     Bench(bench::Bench),
     /// Import, synthesise and inspect motion
     #[command(subcommand)]
@@ -87,7 +89,7 @@ impl Command {
             #[cfg(feature = "viewer")]
             Command::Render(render) => render.run(),
             Command::Sim(sim) => sim.run(),
-            #[cfg(feature = "report")]
+            #[cfg(feature = "viewer")]
             Command::Bench(bench) => bench.run(),
             Command::Data(data) => data.run(),
         }

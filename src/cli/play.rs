@@ -16,7 +16,7 @@ use footwork::train::data;
 use footwork::train::playthrough::PlaythroughContext;
 use footwork::view::body_playthrough::BodyContext;
 use footwork::view::own_fighter::OwnFighter;
-use footwork::viewer::policies::PolicyEntry;
+use footwork::viewer::policies::{LoadedPolicy, Policies, PolicyEntry};
 use footwork::viewer::window;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -36,6 +36,9 @@ pub struct Play {
     /// level; without it, RUN's own
     #[arg(long, value_name = "RUN", requires = "run")]
     fighter: Option<PathBuf>,
+    /// Show each new checkpoint of the training that writes RUN, as soon as it is there
+    #[arg(long, requires = "run")]
+    follow: bool,
 }
 
 impl Play {
@@ -47,6 +50,13 @@ impl Play {
     }
 
     fn policy(&self, run: &std::path::Path) -> Result<()> {
+        if self.follow && run.is_file() {
+            let why = format!(
+                "--follow takes a run's folder: {} is one checkpoint",
+                run.display()
+            );
+            return Err(Usage(why).into());
+        }
         let moved = Moved {
             data: self.data.as_deref(),
             skills: self.skills.as_deref(),
@@ -58,7 +68,8 @@ impl Play {
         let fighter = fighter.transpose()?;
         let title = format!("footwork: {}", run.folder.path().display());
         if let Some(body) = run.task.body() {
-            let policies = policies(&run, |run, of| BodyPolicy::new(of, &run.config, &*run.task))?;
+            let load = |run: &Run, of| BodyPolicy::new(of, &run.config, &*run.task);
+            let policies = self.policies(&run, load)?;
             let mut context = BodyContext::new(body);
             if let Some(fighter) = fighter {
                 context = context.with_fighter(fighter);
@@ -67,7 +78,8 @@ impl Play {
         }
         let locomotion = run.locomotion("play")?;
         let (matcher, task) = (locomotion.matcher.clone(), locomotion.task);
-        let policies = policies(&run, |_, of| Ok(Box::new(of.policy) as Box<dyn Controller>))?;
+        let load = |_: &Run, of: Checkpoint| Ok(Box::new(of.policy) as Box<dyn Controller>);
+        let policies = self.policies(&run, load)?;
         let context = PlaythroughContext::new(matcher, task, Style::BEST);
         window::play(&Gpu::drawing()?, &title, context, policies)
     }
@@ -83,7 +95,43 @@ impl Play {
             ..Plane::default()
         });
         let context = PlaythroughContext::new(Arc::new(matcher), task, Style::BEST);
-        window::play(&Gpu::drawing()?, "footwork", context, Vec::new())
+        window::play(
+            &Gpu::drawing()?,
+            "footwork",
+            context,
+            Policies::new(Vec::new()),
+        )
+    }
+
+    /// A run's checkpoints, of each of which `load` makes a policy. The requested one is the last: it is shown
+    /// first.
+    fn policies<P: 'static>(
+        &self,
+        run: &Arc<Run>,
+        load: fn(&Run, Checkpoint) -> Result<P>,
+    ) -> Result<Policies<P>> {
+        let mut paths = run.folder.checkpoint_files()?;
+        paths.retain(|other| other.file_name() != run.path.file_name());
+        paths.push(run.path.clone());
+        let entry = |path: PathBuf| {
+            let name = path.file_stem().unwrap_or_default();
+            let (name, run) = (name.to_string_lossy().into(), run.clone());
+            let load = move || {
+                let checkpoint = run.checkpoint(&path)?;
+                let steps = checkpoint.header.steps;
+                let policy = load(&run, checkpoint)?;
+                Ok(LoadedPolicy { policy, steps })
+            };
+            PolicyEntry {
+                name,
+                load: Box::new(load) as Box<dyn Fn() -> Result<LoadedPolicy<P>>>,
+            }
+        };
+        let policies = Policies::new(paths.into_iter().map(entry).collect());
+        Ok(match self.follow {
+            true => policies.following(run.path.clone()),
+            false => policies,
+        })
     }
 }
 
@@ -113,25 +161,4 @@ fn fighter_for(run: &Run, own: &Run) -> Result<OwnFighter> {
     let policy = own.checkpoint(&own.path)?.policy;
     let driver = own.task.driver(&policy);
     Ok(OwnFighter::new(env, Some(driver.into())))
-}
-
-/// A run's checkpoints, of each of which `load` makes a policy. The requested one is the last: it is shown
-/// first.
-fn policies<P: 'static>(
-    run: &Arc<Run>,
-    load: fn(&Run, Checkpoint) -> Result<P>,
-) -> Result<Vec<PolicyEntry<P>>> {
-    let mut paths = run.folder.checkpoint_files()?;
-    paths.retain(|other| other.file_name() != run.path.file_name());
-    paths.push(run.path.clone());
-    let entry = |path: PathBuf| {
-        let name = path.file_stem().unwrap_or_default();
-        let (name, run) = (name.to_string_lossy().into(), run.clone());
-        let load = move || load(&run, run.checkpoint(&path)?);
-        PolicyEntry {
-            name,
-            load: Box::new(load) as Box<dyn Fn() -> Result<P>>,
-        }
-    };
-    Ok(paths.into_iter().map(entry).collect())
 }

@@ -7,27 +7,22 @@ use super::say::say;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use footwork::env::humanoid::driver::BodyDriver;
-use footwork::env::humanoid::task::{CpuHumanoidEnv, play};
 use footwork::gpu::Gpu;
-use footwork::nn::Policy;
 use footwork::playback::player::Style;
 use footwork::playback::stitch::Stitching;
 use footwork::train::body_episodes::BodyEpisodes;
-use footwork::train::playthrough::{Playthrough, PlaythroughContext};
+use footwork::train::playthrough::PlaythroughContext;
+use footwork::view::Camera;
 use footwork::view::body_film::BodyFilm;
-use footwork::view::camera::FOLLOW;
-use footwork::view::debug_draw::scene;
+use footwork::view::film::{Film, RATE};
 use footwork::view::image_files::{self, Output};
 use footwork::view::latent_path::SteeredDriver;
 use footwork::view::latent_strips::latent_strips;
-use footwork::view::recorded_bout::RecordedBout;
+use footwork::view::locomotion_film::LocomotionFilm;
+use footwork::view::recorded_bout::recorded_episode;
 use footwork::view::strip::film_strip;
-use footwork::view::{Camera, RenderTarget, Renderer};
 use indicatif::ProgressIterator;
 use std::path::PathBuf;
-
-/// Frames of the motion a second.
-const RATE: u32 = 30;
 
 #[derive(Args)]
 pub struct Render {
@@ -160,15 +155,8 @@ impl Render {
         let locomotion = run.locomotion("render")?;
         let (matcher, task) = (locomotion.matcher.clone(), locomotion.task);
         let context = PlaythroughContext::new(matcher, task, self.blend.style());
-        let mut film = Film {
-            playthrough: Playthrough::new(&context, self.episode),
-            policy,
-            context,
-            camera: self.camera(),
-            renderer: Renderer::new(&gpu),
-            target: RenderTarget::new(&gpu.setup.device, self.size),
-        };
-        film.camera.follow(film.playthrough.shown.at, 1.0);
+        let camera = self.camera();
+        let mut film = LocomotionFilm::new(&gpu, context, policy, self.episode, camera, self.size);
         self.write(&output, &mut film)
     }
 
@@ -190,17 +178,12 @@ impl Render {
         }
         let mut envs = body.open(episode);
         let model = envs.task().model().clone();
-        let mut bout = body.bouts.clone().map(RecordedBout::new);
-        let after = |env: &CpuHumanoidEnv, running: bool| {
-            if let Some(bout) = &mut bout {
-                bout.push(env, running);
-            }
-        };
-        let motion = match latents {
+        let bouts = body.bouts.clone();
+        let (motion, bout) = match latents {
             ChosenLatents::Path(path) => {
-                play::record(&mut envs, &SteeredDriver { driver, path }, task, after)
+                recorded_episode(&mut envs, &SteeredDriver { driver, path }, task, bouts)
             }
-            _ => play::record(&mut envs, driver, task, after),
+            _ => recorded_episode(&mut envs, driver, task, bouts),
         };
         let bout = bout.as_ref();
         if let Output::Png(path) = output {
@@ -222,7 +205,7 @@ impl Render {
     }
 
     /// Writes the film from its start on, for as long as it is to be.
-    fn write(&self, output: &Output, film: &mut dyn Filmed) -> Result<()> {
+    fn write(&self, output: &Output, film: &mut dyn Film) -> Result<()> {
         film.skip((self.start * RATE as f32).round() as usize)?;
         let count = ((self.seconds * self.rate as f32).round() as usize).max(1);
         let between = (RATE / self.rate) as usize;
@@ -299,51 +282,5 @@ impl Render {
             bail!("there is no folder {}", folder.display());
         }
         Ok(output)
-    }
-}
-
-/// A playthrough before a camera.
-struct Film {
-    context: PlaythroughContext,
-    policy: Policy,
-    playthrough: Playthrough,
-    camera: Camera,
-    renderer: Renderer,
-    target: RenderTarget,
-}
-
-/// Something that goes on frame by frame before a camera.
-trait Filmed {
-    /// Goes on by so many frames.
-    fn skip(&mut self, frames: usize) -> Result<()>;
-    /// The present frame, RGB.
-    fn picture(&mut self) -> Result<Vec<u8>>;
-}
-
-impl Filmed for BodyFilm<'_> {
-    fn skip(&mut self, frames: usize) -> Result<()> {
-        self.skip(frames);
-        Ok(())
-    }
-
-    fn picture(&mut self) -> Result<Vec<u8>> {
-        self.picture()
-    }
-}
-
-impl Filmed for Film {
-    fn skip(&mut self, frames: usize) -> Result<()> {
-        for _ in 0..frames {
-            self.playthrough.advance(&self.context, &self.policy)?;
-            self.camera.follow(self.playthrough.shown.at, FOLLOW);
-        }
-        Ok(())
-    }
-
-    fn picture(&mut self) -> Result<Vec<u8>> {
-        let scene = scene(&self.playthrough, &self.context);
-        self.renderer.draw(&scene, None, &self.camera, &self.target);
-        self.target
-            .read(&self.renderer.device, &self.renderer.queue)
     }
 }

@@ -1,10 +1,10 @@
 //! `footwork tournament`.
 
 use super::Usage;
-#[cfg(feature = "report")]
-use super::bench::writable;
 use super::run::{Moved, Run};
 use super::say::{say, show, tell};
+#[cfg(feature = "report")]
+use super::usage::writable;
 use anyhow::Result;
 use clap::Args;
 use footwork::train::run_dir::RunDir;

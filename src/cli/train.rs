@@ -1,6 +1,8 @@
 //! `footwork train`.
 
 use super::Usage;
+#[cfg(feature = "viewer")]
+use super::filming::Filming;
 use super::progress::Progress;
 use super::run::{Moved, locate};
 use super::say::{say, tell};
@@ -203,12 +205,16 @@ impl Train {
         from: Option<Checkpoint>,
         interrupted: &AtomicBool,
     ) -> Result<Summary> {
-        let mut progress = Progress::new(training.config);
+        let progress = Progress::new(training.config);
         #[cfg(feature = "viewer")]
         if self.watch {
             return watched(training, from, interrupted, progress);
         }
-        train(training, from, interrupted, &mut progress)
+        #[cfg(feature = "viewer")]
+        let mut observer = Filming::new(&training, progress);
+        #[cfg(not(feature = "viewer"))]
+        let mut observer = progress;
+        train(training, from, interrupted, &mut observer)
     }
 
     /// The configuration of a new run.

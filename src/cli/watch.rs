@@ -1,10 +1,10 @@
 //! `footwork train --watch`.
 
+use super::filming::Filming;
 use super::progress::Progress;
 use super::say::tell;
 use anyhow::Result;
 use footwork::env::EnvBatch;
-use footwork::gpu::{Device, Gpu};
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::metrics::UpdateMetrics;
 use footwork::train::observer::Observer;
@@ -27,6 +27,10 @@ impl Observer for Both {
         self.watch.opened(envs)
     }
 
+    fn noted(&mut self, note: &str) {
+        self.progress.noted(note);
+    }
+
     fn updated(&mut self, row: &UpdateMetrics, recent: RecentMeans) {
         self.watch.updated(row);
         self.progress.updated(row, recent);
@@ -40,19 +44,16 @@ pub fn watched(
     interrupted: &AtomicBool,
     progress: Progress,
 ) -> Result<Summary> {
-    // Training on the CPU is drawn on what there is to draw on.
-    let gpu = match training.device {
-        Device::Gpu(gpu) => (**gpu).clone(),
-        Device::Cpu => Gpu::drawing()?,
-    };
+    let gpu = training.device.drawing()?;
     let (watch, over) = (Arc::new(Watch::default()), Arc::new(AtomicBool::new(false)));
-    let mut both = Both {
+    let both = Both {
         progress,
         watch: watch.clone(),
     };
+    let mut filming = Filming::new(&training, both);
     std::thread::scope(|scope| {
         let running = scope.spawn(|| {
-            let summary = train(training, from, interrupted, &mut both);
+            let summary = train(training, from, interrupted, &mut filming);
             over.store(true, Ordering::Relaxed);
             summary
         });

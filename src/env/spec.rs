@@ -1,5 +1,6 @@
 //! What an environment observes, how it acts, and how long a step lasts.
 
+use crate::kernels::termination;
 pub use crate::nn::observation::ObservationSpec;
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +31,24 @@ pub struct EnvSpec {
 }
 
 impl EnvSpec {
+    /// Environments with one agent each, which observes plain numbers and moves in no style. Episodes that are
+    /// truncated, of which a rollout may hold any number, are valued as if they went on.
+    pub fn new(envs: usize, observation: usize, action: usize, dt: f32) -> EnvSpec {
+        EnvSpec {
+            envs,
+            agents: 1,
+            observation: ObservationSpec {
+                vector: observation,
+                grid: None,
+            },
+            style: 0,
+            action,
+            dt,
+            bootstrap: 1 << termination::TRUNCATED,
+            bootstraps_often: true,
+        }
+    }
+
     /// Rows of a batch.
     pub fn rows(&self) -> usize {
         self.envs * self.agents

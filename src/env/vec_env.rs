@@ -4,7 +4,7 @@ use super::live_view::LiveView;
 use super::spec::EnvSpec;
 use crate::container::{Section, SectionError};
 use crate::gpu::Array;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use std::any::Any;
 
 pub use crate::kernels::learn::rollout_moments::GROUPS;
@@ -108,12 +108,16 @@ pub trait VecEnv: Any + Send {
     /// between rollouts.
     ///
     /// # Errors
-    /// The device was lost.
-    fn save(&self, to: &mut Section) -> Result<()>;
+    /// The device was lost; or these cannot be saved, as those of a training without checkpoints need not be.
+    fn save(&self, _to: &mut Section) -> Result<()> {
+        bail!("these environments cannot be saved")
+    }
 
     /// Puts a saved state back.
     ///
     /// # Errors
-    /// It is not of such environments.
-    fn load(&mut self, from: &mut Section) -> Result<(), SectionError>;
+    /// It is not of such environments, or these cannot be saved.
+    fn load(&mut self, _from: &mut Section) -> Result<(), SectionError> {
+        Err(SectionError("these environments cannot be saved".into()))
+    }
 }

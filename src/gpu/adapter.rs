@@ -1,5 +1,6 @@
 //! A graphics adapter, opened for burn and for this program's kernels alike.
 
+use super::device::Device;
 use super::no_adapter::{INSTEAD, NoAdapter};
 use burn::backend::Wgpu;
 use burn::tensor::wgpu::{MemoryConfiguration, WgpuBackend, WgpuInitError, WgpuSetup};
@@ -26,6 +27,19 @@ pub struct Gpu {
     pub(super) max_binding: u64,
     /// Lavapipe and its kind: eight lanes, cheap uniform loads, no fast workgroup memory.
     pub software: bool,
+}
+
+impl Device {
+    /// What to draw on beside it: itself, or what there is to draw on.
+    ///
+    /// # Errors
+    /// There is nothing.
+    pub fn drawing(&self) -> Result<Gpu, NoAdapter> {
+        match self {
+            Device::Gpu(gpu) => Ok((**gpu).clone()),
+            Device::Cpu => Gpu::drawing(),
+        }
+    }
 }
 
 impl Gpu {

@@ -22,6 +22,18 @@ pub struct NetworkConfig {
     pub activation: Activation,
 }
 
+/// Two small hidden layers, for observations without maps.
+impl Default for NetworkConfig {
+    fn default() -> Self {
+        NetworkConfig {
+            convolutions: Vec::new(),
+            encoder_hidden: Vec::new(),
+            hidden: vec![32, 32],
+            activation: Activation::Tanh,
+        }
+    }
+}
+
 /// A network that cannot be.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NetworkError {

@@ -1,4 +1,4 @@
-//! Event files that TensorBoard reads: one scalar after another.
+//! Event files that TensorBoard reads: one scalar or picture after another.
 //!
 //! A file is a sequence of records: the length of the data (u64), its checksum, the
 //! data, its checksum, all little-endian; a checksum is a CRC-32C, rotated and offset.
@@ -54,6 +54,22 @@ impl EventWriter {
         self.record(&scalar(tag, step, wall_time_s, value))
     }
 
+    /// Adds a picture, a whole PNG or GIF file, under `tag`, such as "episodes/film"; TensorBoard plays animations.
+    ///
+    /// # Errors
+    ///
+    /// If `file` is neither, or the event file cannot be written.
+    pub fn image(&mut self, tag: &str, step: u64, wall_time_s: f64, file: &[u8]) -> io::Result<()> {
+        let size = image_size(file).ok_or_else(|| {
+            let problem = format!("picture {tag} is neither PNG nor GIF");
+            failure(
+                &self.name,
+                &io::Error::new(io::ErrorKind::InvalidData, problem),
+            )
+        })?;
+        self.record(&image(tag, step, wall_time_s, size, file))
+    }
+
     /// Hands everything written so far to the operating system, so that TensorBoard
     /// sees it.
     ///
@@ -98,14 +114,61 @@ fn version(wall_time_s: f64) -> Vec<u8> {
     event
 }
 
-/// `Event { wall_time = 1: double, step = 2: int64, summary = 5: Summary }` with
-/// `Summary { value = 1: Value }` and `Value { tag = 1: string, simple_value = 2: float }`
+/// `Value { tag = 1: string, simple_value = 2: float }`
 fn scalar(tag: &str, step: u64, wall_time_s: f64, number: f64) -> Vec<u8> {
     let mut value = Vec::new();
     bytes(&mut value, 1, tag.as_bytes());
     fixed32(&mut value, 2, number as f32);
-    let mut summary = Vec::new();
-    bytes(&mut summary, 1, &value);
+    event(step, wall_time_s, &value)
+}
+
+/// `Value { tag = 1: string, image = 4: Image }` with `Image { height = 1: int32, width = 2: int32,
+/// colorspace = 3: int32, encoded_image_string = 4: bytes }`; the colour space 3 is RGB.
+fn image(
+    tag: &str,
+    step: u64,
+    wall_time_s: f64,
+    [width, height]: [u64; 2],
+    file: &[u8],
+) -> Vec<u8> {
+    let mut image = Vec::with_capacity(file.len() + 32);
+    integer(&mut image, 1, height);
+    integer(&mut image, 2, width);
+    integer(&mut image, 3, 3);
+    bytes(&mut image, 4, file);
+    let mut value = Vec::with_capacity(image.len() + 64);
+    bytes(&mut value, 1, tag.as_bytes());
+    bytes(&mut value, 4, &image);
+    event(step, wall_time_s, &value)
+}
+
+/// Width and height of a PNG or GIF file, pixels; `None` if it is neither.
+fn image_size(file: &[u8]) -> Option<[u64; 2]> {
+    if file.starts_with(b"\x89PNG\r\n\x1a\n") {
+        let side = |at: usize| {
+            file.get(at..at + 4)?
+                .try_into()
+                .ok()
+                .map(u32::from_be_bytes)
+        };
+        return Some([side(16)?, side(20)?].map(u64::from));
+    }
+    if file.starts_with(b"GIF8") {
+        let side = |at: usize| {
+            file.get(at..at + 2)?
+                .try_into()
+                .ok()
+                .map(u16::from_le_bytes)
+        };
+        return Some([side(6)?, side(8)?].map(u64::from));
+    }
+    None
+}
+
+/// `Event { wall_time = 1: double, step = 2: int64, summary = 5: Summary }` with `Summary { value = 1: Value }`
+fn event(step: u64, wall_time_s: f64, value: &[u8]) -> Vec<u8> {
+    let mut summary = Vec::with_capacity(value.len() + 16);
+    bytes(&mut summary, 1, value);
     let mut event = Vec::new();
     fixed64(&mut event, 1, wall_time_s);
     integer(&mut event, 2, step);

@@ -78,6 +78,8 @@ pub struct Config {
     pub evaluate_every: u64,
     /// Environment steps between two saved checkpoints.
     pub checkpoint_every: u64,
+    /// Fraction of the training's time that films of policies may take, made where checkpoints are kept. 0 for none.
+    pub film_share: f64,
     /// The task and its own choices.
     pub task: TaskConfig,
     /// The choices of learning.
@@ -228,6 +230,8 @@ impl Config {
             stop_at_success: None,
             evaluate_every: 20_000,
             checkpoint_every: 250_000,
+            // A film takes a second on a processor: the first is due after 50 s.
+            film_share: 0.02,
             task: TaskConfig {
                 name: task.to_string(),
                 settings: chosen.settings,

@@ -281,7 +281,7 @@ fn mean(values: &[f64]) -> f64 {
 /// is around the character; in an arena it is the arena's, and the target is clear of obstacles.
 pub fn send_elsewhere(envs: &mut CpuLocomotion, env: usize) {
     const STREAM: u32 = 0x5455_524e;
-    let (count, extent) = (envs.params.envs, envs.params.task.target_extent(LEVELS - 1));
+    let extent = envs.params.task.target_extent(LEVELS - 1);
     let at = [state_f32::X, state_f32::Z].map(|field| envs.field(field, env));
     let centre = match envs.params.task.arena_half_extent() {
         None => at,
@@ -299,6 +299,5 @@ pub fn send_elsewhere(envs: &mut CpuLocomotion, env: usize) {
         .take(64)
         .find(|place| far(place) && !envs.blocked(env, *place))
         .unwrap_or(centre.map(|c| c + extent));
-    envs.state_f32[state_f32::TARGET_X * count + env] = place[0];
-    envs.state_f32[state_f32::TARGET_Z * count + env] = place[1];
+    envs.set_target(env, place);
 }

@@ -3,7 +3,7 @@
 use super::metrics::UpdateMetrics;
 use super::run_dir::RunDir;
 #[cfg(feature = "report")]
-use super::tensorboard::TensorBoard;
+use super::{snapshots::Snapshot, tensorboard::TensorBoard};
 use crate::container::write_whole;
 use anyhow::{Context, Result};
 use std::fs::File;
@@ -37,7 +37,7 @@ impl MetricsWriter {
         let lines = File::options().append(true).open(&path);
         let lines = lines.with_context(|| format!("cannot write {}", path.display()))?;
         #[cfg(feature = "report")]
-        let events = TensorBoard::open(run.path(), known);
+        let events = TensorBoard::open(run, known);
         Ok(MetricsWriter {
             lines,
             path,
@@ -66,11 +66,23 @@ impl MetricsWriter {
             .write_all(line.as_bytes())
             .with_context(|| format!("cannot write {}", self.path.display()))?;
         #[cfg(feature = "report")]
-        if let Some(Err(error)) = self.events.as_mut().map(|events| events.write(row)) {
+        self.event(|events| events.write(row));
+        Ok(())
+    }
+
+    /// Adds pictures to the events.
+    #[cfg(feature = "report")]
+    pub fn add(&mut self, pictures: &[Snapshot]) {
+        self.event(|events| events.add(pictures));
+    }
+
+    /// Writes something for TensorBoard, as long as that can be done.
+    #[cfg(feature = "report")]
+    fn event(&mut self, write: impl FnOnce(&mut TensorBoard) -> std::io::Result<()>) {
+        if let Some(Err(error)) = self.events.as_mut().map(write) {
             self.note = Some(unwritten(&error));
             self.events = None;
         }
-        Ok(())
     }
 }
 

@@ -28,6 +28,8 @@ pub mod planner;
 pub mod playthrough;
 pub mod rendered_frames;
 pub mod run_dir;
+#[cfg(feature = "report")]
+pub mod snapshots;
 pub mod state;
 pub mod task;
 pub mod tasks;

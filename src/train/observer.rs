@@ -4,6 +4,7 @@ use super::config::Config;
 use super::metrics::UpdateMetrics;
 use super::state::RecentMeans;
 use crate::env::EnvBatch;
+use crate::nn::Policy;
 use anyhow::Result;
 
 /// What a training tells while it runs. `()` does not listen.
@@ -21,6 +22,15 @@ pub trait Observer {
 
     /// Something happened that the user should know of and that stops nothing.
     fn noted(&mut self, _note: &str) {}
+
+    /// Films the fixed episodes of a policy, for somebody who looks on from elsewhere: a GIF file, if there is
+    /// something to film with.
+    ///
+    /// # Errors
+    /// The film cannot be made; the training goes on without films.
+    fn film(&mut self, _policy: &Policy) -> Result<Option<Vec<u8>>> {
+        Ok(None)
+    }
 
     /// An update is over; `recent` are means over the latest episodes.
     fn updated(&mut self, _row: &UpdateMetrics, _recent: RecentMeans) {}

@@ -176,12 +176,7 @@ impl Playthrough {
 
     /// Puts the target elsewhere on the ground, m.
     pub fn set_target(&mut self, at: [f32; 2]) {
-        for (field, value) in [state_f32::TARGET_X, state_f32::TARGET_Z]
-            .into_iter()
-            .zip(at)
-        {
-            self.env.state_f32[field] = value;
-        }
+        self.env.set_target(0, at);
         // An arrival on the way would draw another.
         if let Some(step) = &mut self.step
             && step.termination == termination::SUCCESS

@@ -213,7 +213,12 @@ impl RunDir {
 
     /// The periodic checkpoint at a number of steps; the names sort like the numbers.
     pub fn checkpoint_at(&self, steps: u64) -> PathBuf {
-        self.checkpoint(&format!("steps-{steps:010}"))
+        self.checkpoint(&name_at(steps))
+    }
+
+    /// Where pictures of policies are, a folder a kind.
+    pub fn pictures(&self) -> PathBuf {
+        self.file("pictures")
     }
 
     /// All checkpoints, the periodic ones first and in order.
@@ -253,6 +258,11 @@ impl RunDir {
         let text = serde_json::to_string_pretty(summary)? + "\n";
         Ok(write_whole(&self.file("summary.json"), text.as_bytes())?)
     }
+}
+
+/// What is kept of a number of steps; the names sort like the numbers.
+pub fn name_at(steps: u64) -> String {
+    format!("steps-{steps:010}")
 }
 
 /// Makes the next free `runs/TASK-N`: of two processes that ask at once, each gets its own.

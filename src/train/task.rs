@@ -7,6 +7,8 @@
 use super::body_episodes::BodyEpisodes;
 use super::config::{Config, ConfigError, Preset, TaskPreset};
 use super::evaluation::{EvalOptions, EvalReport, Evaluation};
+#[cfg(feature = "report")]
+use super::figures::draw_curve;
 use super::fingerprint::Fingerprint;
 use super::locomotion::Locomotion;
 #[cfg(feature = "report")]
@@ -24,6 +26,8 @@ use crate::rl::ase::FrozenLowLevel;
 use crate::rl::ppo::PpoLearner;
 use anyhow::Result;
 use std::path::Path;
+#[cfg(feature = "report")]
+use std::path::PathBuf;
 
 /// A task by name, before its choices are made.
 pub struct TaskEntry {
@@ -195,12 +199,14 @@ pub trait Task: Send + Sync {
         &[]
     }
 
-    /// Draws the figures of a run into its folder.
+    /// Draws the figures of a run into its folder: the learning curve, and what else a task has. Returns their files.
     ///
     /// # Errors
     /// A checkpoint cannot be read, or a picture not be written.
     #[cfg(feature = "report")]
-    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()>;
+    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<Vec<PathBuf>> {
+        draw_curve(run, rows)
+    }
 
     /// What `play`, `train --watch` and `render` show of motion matching.
     fn locomotion(&self) -> Option<&Locomotion> {

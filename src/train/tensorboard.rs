@@ -1,26 +1,35 @@
-//! The metrics of a run for TensorBoard.
+//! The metrics of a run and the pictures of its policies for TensorBoard.
 
 use super::metrics::UpdateMetrics;
+use super::run_dir::RunDir;
+use super::snapshots::{Snapshot, snapshots};
 use crate::report::events::EventWriter;
 use std::io;
-use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Appends to the events of a run.
 pub struct TensorBoard(EventWriter);
 
 impl TensorBoard {
-    /// Starts over with the updates that are known; new ones follow.
+    /// Starts over with the updates that are known, and the pictures of policies until then; new ones follow.
     ///
     /// # Errors
-    /// The file cannot be written.
-    pub fn open(folder: &Path, known: &[UpdateMetrics]) -> io::Result<Self> {
+    /// The file cannot be written, or a picture not be read.
+    pub fn open(run: &RunDir, known: &[UpdateMetrics]) -> io::Result<Self> {
         let now = unix_time();
-        let mut events = TensorBoard(EventWriter::create(folder, now)?);
+        let mut events = TensorBoard(EventWriter::create(run.path(), now)?);
+        let mut pictures = match known.is_empty() {
+            true => Vec::new(),
+            false => snapshots(run)?,
+        };
         // As if the run had gone on without the pause until now.
         let start = now - known.last().map_or(0.0, |row| row.wall_s);
         for row in known {
-            events.show(row, start + row.wall_s)?;
+            let time = start + row.wall_s;
+            events.show(row, time)?;
+            for picture in pictures.extract_if(.., |picture| picture.steps <= row.steps) {
+                events.picture(&picture, time)?;
+            }
         }
         events.0.flush()?;
         Ok(events)
@@ -33,6 +42,23 @@ impl TensorBoard {
     pub fn write(&mut self, row: &UpdateMetrics) -> io::Result<()> {
         self.show(row, unix_time())?;
         self.0.flush()
+    }
+
+    /// Adds pictures of policies.
+    ///
+    /// # Errors
+    /// One cannot be read, or the file not be written.
+    pub fn add(&mut self, pictures: &[Snapshot]) -> io::Result<()> {
+        let now = unix_time();
+        pictures
+            .iter()
+            .try_for_each(|picture| self.picture(picture, now))?;
+        self.0.flush()
+    }
+
+    fn picture(&mut self, picture: &Snapshot, time: f64) -> io::Result<()> {
+        let file = std::fs::read(&picture.path)?;
+        self.0.image(&picture.tag, picture.steps, time, &file)
     }
 
     fn show(&mut self, row: &UpdateMetrics, time: f64) -> io::Result<()> {

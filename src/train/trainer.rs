@@ -7,6 +7,8 @@ use super::metrics::{self, UpdateMetrics};
 use super::metrics_writer::MetricsWriter;
 use super::observer::Observer;
 use super::run_dir::{RunDir, Summary};
+#[cfg(feature = "report")]
+use super::snapshots::{Snapshot, SnapshotMaker};
 use super::state::TrainerState;
 use super::task::Task;
 use crate::env::EnvBatch;
@@ -14,7 +16,10 @@ use crate::env::humanoid::batch::overflow_warning;
 use crate::gpu::Device;
 use crate::rl::Algorithm;
 use anyhow::{Context, Result};
+use std::collections::BTreeSet;
 use std::path::Path;
+#[cfg(feature = "report")]
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -82,6 +87,9 @@ struct Loop<'a> {
     state: TrainerState,
     rows: Vec<UpdateMetrics>,
     writer: MetricsWriter,
+    /// Until a picture cannot be made.
+    #[cfg(feature = "report")]
+    snapshots: Option<SnapshotMaker<'a>>,
     /// Environment steps so far.
     steps: u64,
     /// Seconds before this process, and its start.
@@ -132,6 +140,8 @@ impl<'a> Loop<'a> {
             learner,
             state,
             writer: MetricsWriter::open(run, &rows)?,
+            #[cfg(feature = "report")]
+            snapshots: Some(SnapshotMaker::new(run, task, config.film_share)),
             rows,
             steps,
             earlier_s,
@@ -161,7 +171,9 @@ impl<'a> Loop<'a> {
             if self.steps >= config.steps {
                 return Ok("steps");
             }
-            if config.max_time_s.is_some_and(|max| self.wall_s() >= max) {
+            // As whoever resumes the run will see it.
+            let wall_s = self.rows.last().map_or(0.0, |row| row.wall_s);
+            if config.max_time_s.is_some_and(|max| wall_s >= max) {
                 return Ok("time");
             }
             if interrupted.load(Ordering::Relaxed) {
@@ -177,7 +189,7 @@ impl<'a> Loop<'a> {
                 observer.noted(&note);
             }
             self.rows.push(row);
-            self.keep(before)?;
+            self.keep(before, observer)?;
             if reached {
                 return Ok("success");
             }
@@ -243,7 +255,7 @@ impl<'a> Loop<'a> {
     }
 
     /// Saves what this update has earned: periodic, milestone and best checkpoints.
-    fn keep(&mut self, before: u64) -> Result<()> {
+    fn keep(&mut self, before: u64, observer: &mut dyn Observer) -> Result<()> {
         let Training {
             config, task, run, ..
         } = self.training;
@@ -255,20 +267,43 @@ impl<'a> Loop<'a> {
             self.save(&run.checkpoint("best"))?;
         }
         let passed = |steps: &u64| before < *steps && *steps <= self.steps;
-        let mut due = self.saved.elapsed() >= SAVE_EVERY;
-        for &steps in task.milestones().iter().filter(|steps| passed(steps)) {
+        let every = config.checkpoint_every;
+        let periodic = self.crossed(every, before);
+        let periodic = periodic.then(|| self.steps / every * every);
+        let milestones = task.milestones().iter().copied().filter(passed);
+        let kept: BTreeSet<u64> = milestones.chain(periodic).collect();
+        for &steps in &kept {
             self.save(&run.checkpoint_at(steps))?;
-            due = true;
         }
-        if self.crossed(config.checkpoint_every, before) {
-            let every = config.checkpoint_every;
-            self.save(&run.checkpoint_at(self.steps / every * every))?;
-            due = true;
+        let due = !kept.is_empty() || self.saved.elapsed() >= SAVE_EVERY;
+        if due || self.rows.len() == 1 {
+            self.save_last()?;
         }
-        match due || self.rows.len() == 1 {
-            true => self.save_last(),
-            false => Ok(()),
+        kept.last()
+            .map_or(Ok(()), |&steps| self.show(steps, observer))
+    }
+
+    /// Makes pictures of what the policy does after so many steps.
+    #[cfg(feature = "report")]
+    fn show(&mut self, steps: u64, observer: &mut dyn Observer) -> Result<()> {
+        let Some(snapshots) = &mut self.snapshots else {
+            return Ok(());
+        };
+        match snapshots.take(&self.learner.policy()?, steps, observer) {
+            Ok(made) => self.writer.add(&made),
+            Err(error) => {
+                observer.noted(&format!(
+                    "note: {error:#}; the training goes on without pictures"
+                ));
+                self.snapshots = None;
+            }
         }
+        Ok(())
+    }
+
+    #[cfg(not(feature = "report"))]
+    fn show(&mut self, _steps: u64, _observer: &mut dyn Observer) -> Result<()> {
+        Ok(())
     }
 
     /// Saves where a run that is stopped goes on.
@@ -318,7 +353,7 @@ impl<'a> Loop<'a> {
                 summary.evaluation = self.evaluate(EPISODES)?;
                 run.write_summary(&summary)?;
                 #[cfg(feature = "report")]
-                self.training.task.figures(run, &self.rows)?;
+                self.figures()?;
                 Ok(summary)
             }
             Err(error) => {
@@ -327,5 +362,21 @@ impl<'a> Loop<'a> {
                 Err(error)
             }
         }
+    }
+    /// Draws the figures of the run, and adds them to what TensorBoard shows.
+    #[cfg(feature = "report")]
+    fn figures(mut self) -> Result<()> {
+        let Training { task, run, .. } = self.training;
+        let figure = |path: PathBuf| Snapshot {
+            tag: format!(
+                "figures/{}",
+                path.file_stem().unwrap_or_default().to_string_lossy()
+            ),
+            steps: self.steps,
+            path,
+        };
+        let files = task.figures(run, &self.rows)?.into_iter();
+        self.writer.add(&files.map(figure).collect::<Vec<_>>());
+        Ok(())
     }
 }

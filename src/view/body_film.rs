@@ -2,6 +2,7 @@
 
 use super::bout_bars;
 use super::camera::{Camera, FOLLOW};
+use super::film::Film;
 use super::recorded_bout::RecordedBout;
 use super::render_target::RenderTarget;
 use super::renderer::Renderer;
@@ -49,26 +50,25 @@ impl<'a> BodyFilm<'a> {
         film
     }
 
-    /// Goes on by so many frames; the last one stays.
-    pub fn skip(&mut self, frames: usize) {
-        for _ in 0..frames {
-            self.frame = (self.frame + 1).min(self.motion.frames - 1);
-            self.follow(FOLLOW);
-        }
-    }
-
     fn follow(&mut self, by: f32) {
         let poses = shapes::poses(self.model, self.motion.q(self.frame));
         let (at, side) = shapes::company(self.model, &poses);
         let aspect = self.target.aspect();
         self.camera.frame([at.x, at.z], side, aspect, by);
     }
+}
 
-    /// The frame, RGB.
-    ///
-    /// # Errors
-    /// The GPU was lost.
-    pub fn picture(&mut self) -> Result<Vec<u8>> {
+impl Film for BodyFilm<'_> {
+    /// The last frame stays.
+    fn skip(&mut self, frames: usize) -> Result<()> {
+        for _ in 0..frames {
+            self.frame = (self.frame + 1).min(self.motion.frames - 1);
+            self.follow(FOLLOW);
+        }
+        Ok(())
+    }
+
+    fn picture(&mut self) -> Result<Vec<u8>> {
         let poses = shapes::poses(self.model, self.motion.q(self.frame));
         let mut scene = Scene::default();
         shapes::draw(&mut scene, self.model, &poses, Vec3::ZERO, Look::Solid);

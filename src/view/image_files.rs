@@ -70,12 +70,20 @@ const SAMPLED: usize = 12;
 /// Every so many pixels of them.
 const STRIDE: usize = 7;
 
-/// Writes an endless GIF of so many frames a second: one palette for all frames, so that nothing
-/// flickers, and of every frame only the pixels that change.
+/// Writes an endless GIF of so many frames a second.
 ///
 /// # Errors
 /// The pictures are larger than a GIF holds, or the file cannot be written.
 pub fn gif(path: &Path, size: [u32; 2], rate: u32, frames: &[Vec<u8>]) -> Result<()> {
+    write_whole(path, &gif_file(size, rate, frames)?).context("the animation is lost")
+}
+
+/// The bytes of an endless GIF of so many frames a second: one palette for all frames, so that nothing
+/// flickers, and of every frame only the pixels that change.
+///
+/// # Errors
+/// The pictures are larger than a GIF holds.
+pub fn gif_file(size: [u32; 2], rate: u32, frames: &[Vec<u8>]) -> Result<Vec<u8>> {
     let [width, height] = size.map(u16::try_from);
     let (width, height) = (width?, height?);
     let palette = Palette::of(frames);
@@ -105,7 +113,7 @@ pub fn gif(path: &Path, size: [u32; 2], rate: u32, frames: &[Vec<u8>]) -> Result
         before = Some(indices);
     }
     drop(encoder);
-    write_whole(path, &bytes).context("the animation is lost")
+    Ok(bytes)
 }
 
 /// When a frame begins: GIFs count in hundredths of a second.

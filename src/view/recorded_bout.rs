@@ -4,7 +4,9 @@ use super::bout_scene::{flashes, ring};
 use super::scene::Scene;
 use crate::env::humanoid::boxing::BoxingTask;
 use crate::env::humanoid::boxing::bout::{Bout, tally};
-use crate::env::humanoid::task::CpuHumanoidEnv;
+use crate::env::humanoid::driver::BodyDriver;
+use crate::env::humanoid::task::{CpuHumanoidEnv, play};
+use crate::physics::motion_clip::MotionClip;
 use std::sync::Arc;
 
 /// What happened in a bout besides the fighters' motion.
@@ -45,4 +47,20 @@ impl RecordedBout {
         ring(scene, self.task.boxing().arena);
         flashes(scene, &self.at(frame).strikes);
     }
+}
+
+/// An episode of the only environment to its end, and what it was besides, if it was a bout of `bouts`.
+pub fn recorded_episode(
+    env: &mut CpuHumanoidEnv,
+    driver: &dyn BodyDriver,
+    name: &str,
+    bouts: Option<Arc<BoxingTask>>,
+) -> (MotionClip, Option<RecordedBout>) {
+    let mut bout = bouts.map(RecordedBout::new);
+    let motion = play::record(env, driver, name, |env, running| {
+        if let Some(bout) = &mut bout {
+            bout.push(env, running);
+        }
+    });
+    (motion, bout)
 }

@@ -3,7 +3,7 @@
 #[cfg(feature = "gamepad")]
 use super::gamepad::Gamepad;
 use super::maps;
-use super::policies::{Policies, PolicyEntry};
+use super::policies::Policies;
 use super::runners_up::{Found, nearest};
 use super::screen::{PointerAction, Screen};
 use super::source::{self, Source, Steered};
@@ -61,9 +61,8 @@ impl Viewer {
         gpu: &Gpu,
         window: &RenderState,
         context: PlaythroughContext,
-        policies: Vec<PolicyEntry<Box<dyn Controller>>>,
+        mut policies: Policies<Box<dyn Controller>>,
     ) -> Result<Self> {
-        let policies = Policies::new(policies);
         let source = match policies.load() {
             Some(policy) => Source::Policy(policy?),
             None => Source::Steered(Steered::new(context.database().clone())),

@@ -1,7 +1,7 @@
 //! The contents of the window of a simulated body.
 
 use super::bout_panel::BoutPanel;
-use super::policies::{Policies, PolicyEntry};
+use super::policies::Policies;
 use super::screen::{PointerAction, Screen};
 use super::skills_panel::{LatentWish, SkillsPanel};
 use super::timeline::Timeline;
@@ -54,9 +54,8 @@ impl BodyViewer {
         gpu: &Gpu,
         window: &RenderState,
         mut context: BodyContext,
-        policies: Vec<PolicyEntry<BodyPolicy>>,
+        mut policies: Policies<BodyPolicy>,
     ) -> Result<Self> {
-        let policies = Policies::new(policies);
         let policy = policies.load().context("the run has no checkpoints")??;
         // Between fighters, arrows and a third body would be in the way.
         let alone = context.episodes().bouts.is_none();

@@ -17,6 +17,7 @@ pub mod source;
 pub mod timeline;
 pub mod transport;
 pub mod watch;
+pub mod watched_file;
 pub mod window;
 
 pub use app::Viewer;

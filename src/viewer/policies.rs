@@ -1,20 +1,35 @@
 //! The list of a run's checkpoints.
 
-use anyhow::Result;
+use super::watched_file::{EVERY_S, WatchedFile};
+use anyhow::{Context, Result};
 use eframe::egui::{self, Ui};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// A policy with what is known of it.
+pub struct LoadedPolicy<P> {
+    /// The policy.
+    pub policy: P,
+    /// Environment steps that it has learned from.
+    pub steps: u64,
+}
 
 /// A policy that can be chosen.
 pub struct PolicyEntry<P> {
     /// Name in the list.
     pub name: String,
     /// Loads it.
-    pub load: Box<dyn Fn() -> Result<P>>,
+    pub load: Box<dyn Fn() -> Result<LoadedPolicy<P>>>,
 }
 
 /// Policies, of which one is chosen.
 pub struct Policies<P> {
     entries: Vec<PolicyEntry<P>>,
     chosen: usize,
+    /// Environment steps of the policy that is shown.
+    steps: u64,
+    /// The file of the last entry, which a training writes anew, and whether each new one is to be shown.
+    followed: Option<(WatchedFile, bool)>,
 }
 
 impl<P> Policies<P> {
@@ -23,6 +38,16 @@ impl<P> Policies<P> {
         Policies {
             chosen: entries.len().saturating_sub(1),
             entries,
+            steps: 0,
+            followed: None,
+        }
+    }
+
+    /// Shows what a training writes into `file`, from which the last entry loads, as soon as it is written.
+    pub fn following(self, file: PathBuf) -> Policies<P> {
+        Policies {
+            followed: Some((WatchedFile::new(file), true)),
+            ..self
         }
     }
 
@@ -32,13 +57,16 @@ impl<P> Policies<P> {
     }
 
     /// Loads the chosen one; nothing if there are none.
-    pub fn load(&self) -> Option<Result<P>> {
-        self.entries.get(self.chosen).map(|entry| (entry.load)())
+    pub fn load(&mut self) -> Option<Result<P>> {
+        let loaded = (self.entries.get(self.chosen)?.load)();
+        Some(self.take(loaded))
     }
 
-    /// Draws the list. If another is chosen, returns it; one that cannot be loaded is not chosen.
+    /// Draws the list. If another is chosen, or a followed one is there anew, returns it; one that cannot be loaded
+    /// leaves the present one.
     pub fn show(&mut self, ui: &mut Ui) -> Option<Result<P>> {
-        let mut chosen = self.chosen;
+        let before = self.chosen;
+        let mut chosen = before;
         egui::ComboBox::from_label("Checkpoint")
             .selected_text(&self.entries[chosen].name)
             .show_ui(ui, |ui| {
@@ -46,13 +74,46 @@ impl<P> Policies<P> {
                     ui.selectable_value(&mut chosen, index, &entry.name);
                 }
             });
-        if chosen == self.chosen {
+        ui.label(format!("learned from {} steps", self.steps));
+        if chosen != before {
+            if let Some((_, follows)) = &mut self.followed {
+                *follows = false;
+            }
+            let loaded = (self.entries[chosen].load)();
+            if loaded.is_ok() {
+                self.chosen = chosen;
+            }
+            return Some(self.take(loaded));
+        }
+        self.follow(ui)
+    }
+
+    /// Draws whether a training is followed, and loads what it has written.
+    fn follow(&mut self, ui: &mut Ui) -> Option<Result<P>> {
+        let (file, follows) = self.followed.as_mut()?;
+        let clicked = ui.checkbox(follows, "Follow the training").clicked();
+        if !*follows {
             return None;
         }
-        let loaded = (self.entries[chosen].load)();
-        if loaded.is_ok() {
-            self.chosen = chosen;
+        ui.ctx()
+            .request_repaint_after(Duration::from_secs_f64(EVERY_S));
+        let is_new = file.is_new(ui.input(|input| input.time));
+        if !is_new && !clicked {
+            return None;
         }
-        Some(loaded)
+        self.chosen = self.entries.len() - 1;
+        let loaded = (self.entries[self.chosen].load)().with_context(|| {
+            format!(
+                "the newest checkpoint cannot be read; this is still the policy of {} steps",
+                self.steps
+            )
+        });
+        Some(self.take(loaded))
+    }
+
+    fn take(&mut self, loaded: Result<LoadedPolicy<P>>) -> Result<P> {
+        let LoadedPolicy { policy, steps } = loaded?;
+        self.steps = steps;
+        Ok(policy)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::app::Viewer;
 use super::body_app::BodyViewer;
-use super::policies::PolicyEntry;
+use super::policies::Policies;
 use super::watch::{Crowded, Watch, WatchedMotion};
 use crate::gpu::Gpu;
 use crate::train::body_policy::BodyPolicy;
@@ -78,7 +78,7 @@ pub fn play(
     gpu: &Gpu,
     title: &str,
     context: PlaythroughContext,
-    policies: Vec<PolicyEntry<Box<dyn Controller>>>,
+    policies: Policies<Box<dyn Controller>>,
 ) -> Result<()> {
     let viewer = |window: &RenderState| Viewer::new(gpu, window, context, policies);
     let over = Arc::new(AtomicBool::new(false));
@@ -93,7 +93,7 @@ pub fn play_body(
     gpu: &Gpu,
     title: &str,
     context: BodyContext,
-    policies: Vec<PolicyEntry<BodyPolicy>>,
+    policies: Policies<BodyPolicy>,
 ) -> Result<()> {
     let viewer = |window: &RenderState| BodyViewer::new(gpu, window, context, policies);
     let over = Arc::new(AtomicBool::new(false));

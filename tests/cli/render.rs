@@ -1,6 +1,6 @@
 //! `footwork render`.
 
-use super::Place;
+use super::{Place, TRAIN};
 
 /// Width, height and RGB of a PNG file.
 pub fn png(place: &Place, name: &str) -> (u32, u32, Vec<u8>) {
@@ -37,18 +37,55 @@ fn draws_pictures_animations_and_frames() {
     assert!(!place.path("frames/frame-00002.png").exists());
 
     place.done("render run -o walk.gif --seconds 1 --rate 15 --size 96x64 --blend linear");
-    let file = std::fs::File::open(place.path("walk.gif")).unwrap();
+    assert_eq!(animation(&place, "walk.gif"), ([96, 64], 15, 100));
+}
+
+/// Size of a GIF file, its frames, and hundredths of a second.
+fn animation(place: &Place, name: &str) -> ([u16; 2], usize, u32) {
+    let file = std::fs::File::open(place.path(name)).unwrap();
     let mut options = gif::DecodeOptions::new();
     options.set_color_output(gif::ColorOutput::Indexed);
     let mut decoder = options.read_info(file).unwrap();
-    let mut delays = 0;
-    let mut count = 0;
+    let size = [decoder.width(), decoder.height()];
+    let (mut count, mut delays) = (0, 0);
     while let Some(frame) = decoder.read_next_frame().unwrap() {
-        assert_eq!((frame.width, frame.height), (96, 64));
+        assert_eq!([frame.width, frame.height], size);
         delays += u32::from(frame.delay);
         count += 1;
     }
-    assert_eq!((count, delays), (15, 100));
+    (size, count, delays)
+}
+
+/// Policies are filmed as they learn, of motion matching and of bodies; nothing comes of it but the films.
+#[test]
+fn trainings_are_filmed() {
+    let place = Place::with_data();
+    let films = "--set film_share=1000 --set checkpoint_every=4096";
+    place.done(&format!("{TRAIN} --steps 8192 --out run {films}"));
+    place.done(&format!(
+        "{TRAIN} --steps 8192 --out unseen --set film_share=0"
+    ));
+    for steps in ["0000004096", "0000008192"] {
+        let film = format!("run/pictures/film/steps-{steps}.gif");
+        assert_eq!(animation(&place, &film), ([320, 180], 50, 500));
+        png(&place, &format!("run/pictures/walks/steps-{steps}.png"));
+    }
+    assert!(!place.path("unseen/pictures/film").exists());
+    let policy = |run: &str| {
+        let path = place.path(run).join("checkpoints/last.ckpt");
+        footwork::train::checkpoint::Checkpoint::load(&path)
+            .unwrap()
+            .policy
+            .parameters
+    };
+    assert!(policy("run") == policy("unseen"));
+
+    let body = "train box --device cpu --envs 16 --set ppo.rollout_length=8 --set ppo.minibatch_size=64 \
+                --set amp.minibatch_size=32 --set amp.replay_capacity=256 --set amp.replay_per_update=64 \
+                --set amp.steps=2 --steps 512 --set film_share=1000 --set checkpoint_every=512";
+    place.done(&format!("{body} --out bout"));
+    let (size, frames, _) = animation(&place, "bout/pictures/film/steps-0000000512.gif");
+    assert_eq!((size, frames), ([320, 180], 50));
 }
 
 #[test]
@@ -93,6 +130,8 @@ fn wrong_wishes_are_refused() {
 #[test]
 fn a_run_that_cannot_be_shown_says_why() {
     let place = Place::with_run();
+    let one = "play run/checkpoints/last.ckpt --follow";
+    place.refused(one, 2, &["--follow takes a run's folder"]);
     for program in ["render RUN -o one.png", "play RUN"] {
         let words = |run: &str| program.replace("RUN", run);
         place.refused(&words("nothing"), 1, &["nothing"]);

@@ -105,7 +105,11 @@ fn complaint(mut child: Child) -> String {
 #[test]
 fn windows_stay_open() {
     let (place, display) = (Place::with_run(), Display::open());
-    for words in ["play run", "play --data small.footwork"] {
+    for words in [
+        "play run",
+        "play run --follow",
+        "play --data small.footwork",
+    ] {
         let mut child = start(&place, &display, words);
         let code = ended(&mut child, Duration::from_secs(5));
         let told = complaint(child);

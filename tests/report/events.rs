@@ -1,36 +1,9 @@
 //! `events`: what TensorBoard reads.
 
+use crate::event_file::{images, records};
 use footwork::report::events::{self, EventWriter};
+use footwork::report::png_file;
 use std::fs;
-
-/// The data of every record, after checking its length and both checksums.
-fn records(mut file: &[u8]) -> Vec<Vec<u8>> {
-    let mut records = Vec::new();
-    while !file.is_empty() {
-        let length = u64::from_le_bytes(file[..8].try_into().unwrap()) as usize;
-        let (data, rest) = file[12..].split_at(length);
-        assert_eq!(file[8..12], masked_crc(&file[..8]));
-        assert_eq!(rest[..4], masked_crc(data));
-        records.push(data.to_vec());
-        file = &rest[4..];
-    }
-    records
-}
-
-/// CRC-32C bit by bit, from its definition.
-fn masked_crc(data: &[u8]) -> [u8; 4] {
-    let mut crc = u32::MAX;
-    for &byte in data {
-        crc ^= u32::from(byte);
-        for _ in 0..8 {
-            crc = (crc >> 1) ^ if crc & 1 == 1 { 0x82f6_3b78 } else { 0 };
-        }
-    }
-    (!crc)
-        .rotate_right(15)
-        .wrapping_add(0xa282_ead8)
-        .to_le_bytes()
-}
 
 #[test]
 fn events_decode() {
@@ -59,4 +32,37 @@ fn events_refuse_what_is_no_folder() {
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
     assert!(EventWriter::create(&file, 0.0).is_err());
+}
+
+#[test]
+fn pictures_decode() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("picture.png");
+    png_file::save(&picture, 3, 2, &[7; 18]).unwrap();
+    let png = fs::read(&picture).unwrap();
+    let gif = b"GIF89a\x40\x01\xb4\x00 and so on".to_vec();
+    let mut writer = EventWriter::create(folder.path(), 0.0).unwrap();
+    writer.image("episodes/walks", 20_000, 1.0, &png).unwrap();
+    writer.scalar("a/b", 20_000, 1.0, 0.5).unwrap();
+    writer.image("episodes/film", 1 << 33, 2.0, &gif).unwrap();
+    // What is no picture is not written.
+    let error = writer.image("episodes/film", 3, 2.0, b"text").unwrap_err();
+    assert!(error.to_string().contains("episodes/film"), "{error}");
+    writer
+        .image("episodes/film", 3, 2.0, b"GIF89a")
+        .unwrap_err();
+    writer.flush().unwrap();
+
+    let file = fs::read(folder.path().join(events::FILE_NAME)).unwrap();
+    assert_eq!(records(&file).len(), 4);
+    let found = images(&file);
+    let told = found.iter().map(|one| (&*one.tag, one.step, one.size));
+    assert_eq!(
+        told.collect::<Vec<_>>(),
+        [
+            ("episodes/walks", 20_000, [3, 2]),
+            ("episodes/film", 1 << 33, [320, 180])
+        ]
+    );
+    assert!(found[0].file == png && found[1].file == gif);
 }

@@ -3,6 +3,8 @@
 
 mod ablation;
 mod coverage;
+#[path = "../support/events.rs"]
+mod event_file;
 mod events;
 mod learning_curve;
 mod obstacle_walks;

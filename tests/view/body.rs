@@ -20,7 +20,7 @@ use footwork::view::body_playthrough::{BodyContext, BodyPlaythrough, BodyPush};
 use footwork::view::shapes::{self, Look, seen};
 use footwork::view::{BodyCrowd, Camera, Renderer, Scene};
 use footwork::viewer::BodyViewer;
-use footwork::viewer::policies::PolicyEntry;
+use footwork::viewer::policies::{LoadedPolicy, Policies, PolicyEntry};
 use footwork::viewer::window::shared;
 use glam::Vec3;
 
@@ -35,6 +35,11 @@ pub fn task(name: &str) -> (Config, Box<dyn Task>) {
 
 /// What has learned nothing: it keeps the pose that the task rests in.
 pub fn untrained(config: &Config, task: &dyn Task) -> BodyPolicy {
+    BodyPolicy::new(checkpoint(config, task, 0), config, task).unwrap()
+}
+
+/// A checkpoint of what has learned nothing in so many steps.
+pub fn checkpoint(config: &Config, task: &dyn Task, steps: u64) -> Checkpoint {
     let envs = task.open(&Device::Cpu, config.ppo.envs, 1).unwrap();
     let learner = task.learner(config, &envs, &Device::Cpu).unwrap();
     let header = Header {
@@ -43,10 +48,9 @@ pub fn untrained(config: &Config, task: &dyn Task) -> BodyPolicy {
         spec: envs.spec(),
         fingerprint: task.fingerprint(),
         config: config.to_toml(),
-        steps: 0,
+        steps,
     };
-    let checkpoint = Checkpoint::take(header, &*learner, &envs, &TrainerState::default()).unwrap();
-    BodyPolicy::new(checkpoint, config, task).unwrap()
+    Checkpoint::take(header, &*learner, &envs, &TrainerState::default()).unwrap()
 }
 
 pub fn open(name: &str) -> Harness<'static, BodyViewer> {
@@ -54,11 +58,24 @@ pub fn open(name: &str) -> Harness<'static, BodyViewer> {
     let context = BodyContext::new(task.body().unwrap());
     let untrained = PolicyEntry {
         name: "untrained".into(),
-        load: Box::new(move || Ok(untrained(&config, &*task))),
+        load: Box::new(move || {
+            Ok(LoadedPolicy {
+                policy: untrained(&config, &*task),
+                steps: 0,
+            })
+        }),
     };
+    window(context, Policies::new(vec![untrained]))
+}
+
+/// A window on these policies.
+pub fn window(
+    context: BodyContext,
+    policies: Policies<BodyPolicy>,
+) -> Harness<'static, BodyViewer> {
     let gpu = gpu();
     let window = create_render_state(shared(&gpu), Default::default());
-    let viewer = BodyViewer::new(&gpu, &window, context, vec![untrained]).unwrap();
+    let viewer = BodyViewer::new(&gpu, &window, context, policies).unwrap();
     let renderer = WgpuTestRenderer::from_render_state(window);
     let mut harness = Harness::builder()
         .with_size(Vec2::new(900.0, 560.0))

@@ -4,6 +4,7 @@ mod body;
 mod bout;
 mod compare;
 mod crowd;
+mod follow;
 mod pictures;
 mod skills;
 mod viewer;

@@ -11,10 +11,10 @@ use footwork::motion::features::FRAMES_PER_STEP;
 use footwork::train::controller::Controller;
 use footwork::train::playthrough::Playthrough;
 use footwork::viewer::Viewer;
-use footwork::viewer::policies::PolicyEntry;
+use footwork::viewer::policies::{LoadedPolicy, Policies, PolicyEntry};
 use footwork::viewer::window::shared;
 
-fn plane() -> LocomotionTask {
+pub fn plane() -> LocomotionTask {
     LocomotionTask::Plane(Plane::default())
 }
 /// A point of the ground in front of the character.
@@ -23,7 +23,12 @@ const GROUND: Pos2 = Pos2::new(250.0, 430.0);
 fn walker() -> PolicyEntry<Box<dyn Controller>> {
     PolicyEntry {
         name: "walker".into(),
-        load: Box::new(|| Ok(Box::new(Walker))),
+        load: Box::new(|| {
+            Ok(LoadedPolicy {
+                policy: Box::new(Walker),
+                steps: 0,
+            })
+        }),
     }
 }
 
@@ -37,6 +42,14 @@ fn broken() -> PolicyEntry<Box<dyn Controller>> {
 fn open(
     task: LocomotionTask,
     policies: Vec<PolicyEntry<Box<dyn Controller>>>,
+) -> Harness<'static, Viewer> {
+    window(task, Policies::new(policies))
+}
+
+/// A window on these policies.
+pub fn window(
+    task: LocomotionTask,
+    policies: Policies<Box<dyn Controller>>,
 ) -> Harness<'static, Viewer> {
     let gpu = gpu();
     let window = create_render_state(shared(&gpu), Default::default());

@@ -205,6 +205,16 @@ impl CpuLocomotion {
         self.state_f32[field * self.params.envs + env]
     }
 
+    /// Puts an environment's target elsewhere on the ground, `[x, z]`, m.
+    pub fn set_target(&mut self, env: usize, at: [f32; 2]) {
+        for (field, value) in [state_f32::TARGET_X, state_f32::TARGET_Z]
+            .into_iter()
+            .zip(at)
+        {
+            self.state_f32[field * self.params.envs + env] = value;
+        }
+    }
+
     /// An obstacle of an environment: centre and half sides, m.
     pub fn obstacle(&self, env: usize, slot: usize) -> [f32; boxes::FIELDS] {
         let count = self.params.task.obstacles();

@@ -69,6 +69,37 @@ pub struct Ppo {
     pub network: NetworkConfig,
 }
 
+/// What trains the plane quickest on two cores: what other choices begin with.
+impl Default for Ppo {
+    fn default() -> Self {
+        Ppo {
+            envs: 256,
+            rollout_length: 16,
+            epochs: 3,
+            minibatch_size: 512,
+            learning_rate: 2e-3,
+            final_lr_fraction: 1.0,
+            anneal_steps: 0,
+            critic_learning_rate: 0.0,
+            desired_kl: 0.0,
+            adapt_each_minibatch: false,
+            gamma: 0.95,
+            lambda: 0.95,
+            clip: 0.2,
+            value_clip: 0.0,
+            value_coefficient: 0.5,
+            entropy_coefficient: 0.0,
+            kl_coefficient: 0.0,
+            kl_penalty_target: 0.01,
+            max_grad_norm: 1.0,
+            init_log_std: 0.0,
+            fixed_std: false,
+            normalize_observations: false,
+            network: NetworkConfig::default(),
+        }
+    }
+}
+
 impl Ppo {
     /// Samples of one update of environments with one agent each.
     pub fn batch(&self) -> usize {

@@ -16,6 +16,7 @@ impl Config {
         within("steps", self.steps, 1, LONG)?;
         within("evaluate_every", self.evaluate_every, 1, LONG)?;
         within("checkpoint_every", self.checkpoint_every, 1, LONG)?;
+        within("film_share", self.film_share, 0.0, 1000.0)?;
         if let Some(seconds) = self.max_time_s {
             within("max_time_s", seconds, 0.001, 1e9)?;
         }

@@ -4,11 +4,13 @@
 pub mod obstacles;
 pub mod plane;
 pub mod trajectories;
+pub mod walks;
 
 use super::metrics::UpdateMetrics;
 use super::run_dir::RunDir;
 use crate::report::learning_curve::{self, Level, Point};
 use anyhow::Result;
+use std::path::PathBuf;
 
 /// The metrics as a curve shows them.
 pub fn points(rows: &[UpdateMetrics]) -> Vec<Point> {
@@ -41,11 +43,12 @@ pub fn level_marks(rows: &[UpdateMetrics]) -> Vec<Level> {
     marks.collect()
 }
 
-/// Draws `learning_curve.png` without marks.
+/// Draws `learning_curve.png` without marks. Returns the file.
 ///
 /// # Errors
 /// It cannot be written.
-pub fn draw_curve(run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
+pub fn draw_curve(run: &RunDir, rows: &[UpdateMetrics]) -> Result<Vec<PathBuf>> {
     let curve = run.file("learning_curve.png");
-    Ok(learning_curve::draw(&curve, &points(rows), &[], &[])?)
+    learning_curve::draw(&curve, &points(rows), &[], &[])?;
+    Ok(vec![curve])
 }

@@ -2,6 +2,7 @@
 
 use super::points;
 use super::trajectories::{EpisodeTrajectory, trajectories};
+use crate::nn::Policy;
 use crate::report::chart;
 use crate::report::learning_curve::{self, Mark};
 use crate::report::trajectories::{self as picture, Group, Path};
@@ -10,11 +11,12 @@ use crate::train::locomotion::Locomotion;
 use crate::train::metrics::UpdateMetrics;
 use crate::train::run_dir::RunDir;
 use anyhow::Result;
+use std::path::{Path as FilePath, PathBuf};
 
 /// Episodes drawn for each policy.
 const DRAWN: usize = 6;
 
-/// Draws `learning_curve.png` and, once the first of `milestones` is reached, `trajectories.png`.
+/// Draws `learning_curve.png` and, once the first of `milestones` is reached, `trajectories.png`. Returns the files.
 ///
 /// # Errors
 /// A checkpoint cannot be read, or a picture not be written.
@@ -23,25 +25,35 @@ pub fn draw(
     rows: &[UpdateMetrics],
     milestones: &[u64],
     locomotion: &Locomotion,
-) -> Result<()> {
+) -> Result<Vec<PathBuf>> {
     let mut reached = milestones.to_vec();
     reached.retain(|&steps| run.checkpoint_at(steps).exists());
     let curve = run.file("learning_curve.png");
     learning_curve::draw(&curve, &points(rows), &marks(&reached), &[])?;
-    let groups = reached.iter().enumerate();
-    let groups = groups.map(|(colour, &steps)| group(run, locomotion, steps, colour));
+    let groups = reached.iter().enumerate().map(|(colour, &steps)| {
+        let Checkpoint { header, policy, .. } = Checkpoint::load(&run.checkpoint_at(steps))?;
+        group(locomotion, &policy, header.steps, colour)
+    });
     let groups = groups.collect::<Result<Vec<_>>>()?;
-    match groups.is_empty() {
-        true => Ok(()),
-        false => Ok(picture::draw(&run.file("trajectories.png"), &groups)?),
+    if groups.is_empty() {
+        return Ok(vec![curve]);
     }
+    let walks = run.file("trajectories.png");
+    picture::draw(&walks, &groups)?;
+    Ok(vec![curve, walks])
 }
 
-/// Episodes of the policy at a milestone.
-fn group(run: &RunDir, locomotion: &Locomotion, steps: u64, colour: usize) -> Result<Group> {
-    let checkpoint = Checkpoint::load(&run.checkpoint_at(steps))?;
-    let Locomotion { task, matcher } = locomotion;
-    let drawn = trajectories(&checkpoint.policy, matcher, *task, DRAWN)?;
+/// Draws the walks of a policy after so many steps.
+///
+/// # Errors
+/// The picture cannot be written.
+pub fn draw_walks(of: &Locomotion, policy: &Policy, steps: u64, path: &FilePath) -> Result<()> {
+    Ok(picture::draw(path, &[group(of, policy, steps, 0)?])?)
+}
+
+/// Episodes of a policy after so many steps.
+fn group(of: &Locomotion, policy: &Policy, steps: u64, colour: usize) -> Result<Group> {
+    let drawn = trajectories(policy, &of.matcher, of.task, DRAWN)?;
     let path = |one: EpisodeTrajectory| Path {
         label: match one.reached {
             true => format!("{:.1} s", one.seconds()),
@@ -53,7 +65,7 @@ fn group(run: &RunDir, locomotion: &Locomotion, steps: u64, colour: usize) -> Re
         colour,
     };
     Ok(Group {
-        title: format!("{} steps", chart::steps(checkpoint.header.steps as f64)),
+        title: format!("{} steps", chart::steps(steps as f64)),
         paths: drawn.into_iter().map(path).collect(),
     })
 }

@@ -25,8 +25,6 @@ use crate::train::fingerprint::Fingerprint;
 use crate::train::low_level;
 use crate::train::task::{Loaded, Task, ppo_learner};
 use crate::train::tournament::{Bouts, TournamentPlayer};
-#[cfg(feature = "report")]
-use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 use serde::Serialize;
 use std::sync::Arc;
@@ -305,11 +303,6 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         let task = T::bouts(self.task.judged(&self.library, EPISODES_SEED))?;
         let anchors = self.anchors(&*task);
         Some(Bouts { task, anchors })
-    }
-
-    #[cfg(feature = "report")]
-    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
-        figures::draw_curve(run, rows)
     }
 
     fn body(&self) -> Option<BodyEpisodes> {

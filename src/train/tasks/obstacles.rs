@@ -1,6 +1,6 @@
 //! The task `obstacles`: reach a target among moving obstacles, on levels of rising difficulty.
 
-use super::presets::{convolutional, fast, paper};
+use super::presets::{convolutional, paper};
 use crate::env::locomotion::{LocomotionTask, Obstacles};
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
@@ -16,6 +16,8 @@ use crate::train::task::{Ablation, Loaded, Measure, Task, TaskEntry, Variant};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
+#[cfg(feature = "report")]
+use std::path::PathBuf;
 
 /// The task in the registry.
 pub const ENTRY: TaskEntry = TaskEntry {
@@ -57,7 +59,7 @@ fn fast_among_obstacles() -> Ppo {
         // Wide: who never asks for a run does not learn to run.
         init_log_std: 1.0,
         network: convolutional(2),
-        ..fast()
+        ..Ppo::default()
     }
 }
 
@@ -181,7 +183,7 @@ impl Task for ObstaclesTask {
     }
 
     #[cfg(feature = "report")]
-    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
+    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<Vec<PathBuf>> {
         figures::obstacles::draw(run, rows, &self.locomotion)
     }
 

@@ -1,11 +1,12 @@
 //! The task `plane`: reach a target on an empty plane.
 
-use super::presets::{fast, paper};
+use super::presets::paper;
 use crate::env::locomotion::{LocomotionTask, Plane};
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::motion::normalise::Weights;
 use crate::nn::Policy;
+use crate::rl::ppo::Ppo;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, within};
 use crate::train::evaluate::hardest;
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
@@ -15,6 +16,8 @@ use crate::train::task::{Loaded, Task, TaskEntry, Unsupported};
 #[cfg(feature = "report")]
 use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
+#[cfg(feature = "report")]
+use std::path::PathBuf;
 
 /// The task in the registry.
 pub const ENTRY: TaskEntry = TaskEntry {
@@ -35,7 +38,7 @@ fn preset(preset: Preset) -> TaskPreset {
     TaskPreset {
         settings: with_weights(&Plane::default(), Weights::PAPER),
         ppo: match preset {
-            Preset::Fast => fast(),
+            Preset::Fast => Ppo::default(),
             Preset::Paper => paper(),
         },
         amp: None,
@@ -124,7 +127,7 @@ impl Task for PlaneTask {
     }
 
     #[cfg(feature = "report")]
-    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
+    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<Vec<PathBuf>> {
         figures::plane::draw(run, rows, &MILESTONES, &self.locomotion)
     }
 

@@ -6,35 +6,6 @@ use crate::rl::amp::Amp;
 use crate::rl::ppo::Ppo;
 use crate::train::config::Preset;
 
-/// What trains the plane quickest on two cores.
-pub fn fast() -> Ppo {
-    Ppo {
-        envs: 256,
-        rollout_length: 16,
-        epochs: 3,
-        minibatch_size: 512,
-        learning_rate: 2e-3,
-        final_lr_fraction: 1.0,
-        anneal_steps: 0,
-        critic_learning_rate: 0.0,
-        desired_kl: 0.0,
-        adapt_each_minibatch: false,
-        gamma: 0.95,
-        lambda: 0.95,
-        clip: 0.2,
-        value_clip: 0.0,
-        value_coefficient: 0.5,
-        entropy_coefficient: 0.0,
-        kl_coefficient: 0.0,
-        kl_penalty_target: 0.01,
-        max_grad_norm: 1.0,
-        init_log_std: 0.0,
-        fixed_std: false,
-        normalize_observations: false,
-        network: dense(),
-    }
-}
-
 /// RLlib's defaults of 2023, which the paper used.
 pub fn paper() -> Ppo {
     Ppo {
@@ -62,16 +33,7 @@ pub fn paper() -> Ppo {
         init_log_std: 0.6,
         fixed_std: false,
         normalize_observations: false,
-        network: dense(),
-    }
-}
-
-fn dense() -> NetworkConfig {
-    NetworkConfig {
-        convolutions: Vec::new(),
-        encoder_hidden: Vec::new(),
-        hidden: vec![32, 32],
-        activation: Activation::Tanh,
+        network: NetworkConfig::default(),
     }
 }
 
@@ -109,7 +71,7 @@ pub fn styled(preset: Preset) -> Ppo {
         fixed_std: true,
         normalize_observations: true,
         network: relu(vec![256, 128]),
-        ..fast()
+        ..Ppo::default()
     };
     match preset {
         Preset::Fast => small,

@@ -1,7 +1,6 @@
 //! The task `stand`: a simulated body stays upright for ten seconds while it is pushed.
 
 use super::motions;
-use super::presets::fast;
 use crate::env::humanoid::stand::evaluate::{StandReport, evaluate};
 use crate::env::humanoid::stand::{Stand, StandTask};
 use crate::env::humanoid::task::{open, spec};
@@ -17,8 +16,6 @@ use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, ta
 use crate::train::evaluation::{EvalOptions, EvalReport, Evaluation};
 use crate::train::fingerprint::Fingerprint;
 use crate::train::task::{Loaded, Task, TaskEntry};
-#[cfg(feature = "report")]
-use crate::train::{figures, metrics::UpdateMetrics, run_dir::RunDir};
 use anyhow::Result;
 use std::sync::Arc;
 
@@ -56,7 +53,7 @@ fn preset(_: Preset) -> TaskPreset {
                 hidden: vec![256, 128],
                 activation: Activation::Relu,
             },
-            ..fast()
+            ..Ppo::default()
         },
         amp: None,
         ase: None,
@@ -157,11 +154,6 @@ impl Task for StandTraining {
             ),
             json: serde_json::to_value(&found)?,
         })
-    }
-
-    #[cfg(feature = "report")]
-    fn figures(&self, run: &RunDir, rows: &[UpdateMetrics]) -> Result<()> {
-        figures::draw_curve(run, rows)
     }
 
     fn body(&self) -> Option<BodyEpisodes> {
