@@ -20,7 +20,8 @@ fn main() -> Result<()> {
     let folder = PathBuf::from(folder.context("usage: match_one_query FOLDER_OF_BVH_FILES")?);
     let motion = import(&folder, &ImportOptions::default())?;
     let database = Database::build(&motion.clips, motion.roles, Weights::PAPER)?;
-    let MotionMatcher { database, index } = MotionMatcher::new(Arc::new(database));
+    let matcher = MotionMatcher::new(Arc::new(database));
+    let database = &matcher.database;
 
     // The pose of a recorded frame, and a position and a heading, both straight ahead, for each offset.
     let shown = database.candidates[0];
@@ -33,7 +34,7 @@ fn main() -> Result<()> {
         }
     }
 
-    let nearest = index.nearest(shown, &query);
+    let nearest = matcher.nearest(shown, &query);
     let first = database.candidates[nearest.index as usize] as usize;
     let clip = database.clip(first);
     println!(

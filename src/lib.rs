@@ -55,7 +55,9 @@
 //! - `env`: batches of environments behind one trait: motion matching, simulated bodies (`train`);
 //! - `rl`: rollouts, advantages, PPO (`train`);
 //! - `train`: tasks by name, configuration, run directory, checkpoints, evaluation (`train`);
-//! - `view`, `viewer`: scenes and the renderer that draws them; windows (`viewer`);
+//! - `view`: scenes (`train`) and the renderer that draws them (`viewer`);
+//! - `viewer`: windows (`viewer`);
+//! - `web`: a run in a browser: its files, and the page that plays them (`train`);
 //! - `bench`: what each device makes of each stage (`report` and `train`);
 //! - [`report`]: tables; pictures and TensorBoard events (feature `report`);
 //! - [`container`]: the file format of databases and checkpoints; [`input_file`]: files that users name.
@@ -88,7 +90,9 @@ pub mod report;
 pub mod rl;
 #[cfg(feature = "train")]
 pub mod train;
-#[cfg(feature = "viewer")]
+#[cfg(feature = "train")]
 pub mod view;
 #[cfg(feature = "viewer")]
 pub mod viewer;
+#[cfg(feature = "train")]
+pub mod web;

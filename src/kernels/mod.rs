@@ -7,10 +7,12 @@
 //! - [`humanoid`]: what tasks of the simulated humanoid add to it;
 //! - [`learn`]: sampling, advantages, and the gradient step of dense networks;
 //! - [`mod@bench`]: what a device could do at most;
+//! - [`fma`]: multiplication and addition in one;
 //! - [`rng`]: counter-based random numbers that shaders and twins share;
 //! - [`termination`]: how a step ends.
 
 pub mod bench;
+pub mod fma;
 pub mod humanoid;
 pub mod learn;
 pub mod locomotion;
