@@ -5,6 +5,7 @@
 pub mod body_crowd;
 #[cfg(feature = "viewer")]
 pub mod body_film;
+pub mod body_grip;
 pub mod body_playthrough;
 pub mod body_scene;
 pub mod bout_bars;

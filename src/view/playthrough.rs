@@ -239,6 +239,12 @@ impl Playthrough {
         [state_f32::TARGET_X, state_f32::TARGET_Z].map(|field| self.env.field(field, 0))
     }
 
+    /// Whether the running step ends at the target.
+    pub fn has_arrived(&self) -> bool {
+        let step = self.step.as_ref();
+        step.is_some_and(|step| step.termination == termination::SUCCESS)
+    }
+
     /// Puts the target elsewhere on the ground, m.
     pub fn set_target(&mut self, at: [f32; 2]) {
         for (field, value) in [state_f32::TARGET_X, state_f32::TARGET_Z]
