@@ -14,10 +14,14 @@ const [pages, pictures] = process.argv.slice(2).map((path) => resolve(path));
 const BROWSER = process.env.CHROMIUM ?? "/usr/bin/chromium";
 const QUIET = ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync"];
-// Without a GPU: drawn by WebGL on the processor, and searched by WebAssembly.
-const CPU = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-const WEBGPU = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan"];
-const SIZE = { width: 640, height: 360 };
+// Without a GPU: searched by WebAssembly, drawn on a plain canvas.
+const CPU = ["--disable-gpu"];
+// With WebGPU's software adapter, which is good for the search.
+const WEBGPU = ["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan",
+  "--disable-gpu-compositing", "--disable-accelerated-2d-canvas"];
+// Drawn by WebGL on the processor: slow, but all of it.
+const WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const SIZE = { width: 720, height: 405 };
 // Frames, thirtieths of a second, in which a character arrives, and seconds in which a processor plays and draws them.
 const ARRIVES = 600;
 const PATIENCE_MS = 150_000;
@@ -95,7 +99,7 @@ async function walks(context, url, name) {
   const { page, errors } = await open(context, url);
   console.log(`-- ${name}: ${await paths(page)}`);
   const first = await page.evaluate(() => window.footwork.firstStep);
-  check(`${name}: first step within 3 s`, first < FIRST_STEP_MS, `${first?.toFixed(0)} ms`);
+  check(`${name}: first step within 3 s`, first !== null && first < FIRST_STEP_MS, `${first?.toFixed(0)} ms`);
   const before = await state(page);
   await page.mouse.click(0.62 * SIZE.width, 0.66 * SIZE.height);
   const after = await state(page);
@@ -158,7 +162,7 @@ async function stands(context, url, name) {
   const { page, errors } = await open(context, url);
   console.log(`-- ${name}: ${await paths(page)}`);
   const first = await page.evaluate(() => window.footwork.firstStep);
-  check(`${name}: first step within 3 s`, first < FIRST_STEP_MS, `${first?.toFixed(0)} ms`);
+  check(`${name}: first step within 3 s`, first !== null && first < FIRST_STEP_MS, `${first?.toFixed(0)} ms`);
   await frames(page, 60);
   const now = await state(page);
   check(`${name}: the body is simulated and stands`, now.height > 1.2,
@@ -198,13 +202,28 @@ await browse(CPU, async (context) => {
     if (await exists(name)) await stands(context, `${url}/${name}/index.html?gpu=none`, `${name}-cpu`);
   }
 });
+if (await exists("plane")) {
+  await browse(WEBGL, async (context) => {
+    const { page, errors } = await open(context, `${url}/plane/index.html?gpu=none&draw=webgl`);
+    console.log(`-- plane-webgl: ${await paths(page)}`);
+    await frames(page, 6);
+    await page.screenshot({ path: join(pictures, "plane-webgl.png") });
+    check("plane-webgl: the console has no errors", errors.length === 0, errors.join("; "));
+  });
+}
 await browse(WEBGPU, async (context) => {
+  if (!await exists("plane")) return;
   const page = await context.newPage();
   await page.goto(`${url}/plane/index.html?gpu=none`);
   const adapter = await page.evaluate(async () => Boolean(await navigator.gpu?.requestAdapter()));
   await page.close();
-  if (!adapter) console.log("-- this browser has no WebGPU adapter: the page was not tested with one");
-  if (adapter && await exists("plane")) await walks(context, `${url}/plane/index.html`, "plane-webgpu");
+  if (!adapter) {
+    console.log("-- this browser has no WebGPU adapter: the page was not tested with one");
+    return;
+  }
+  const tested = await walks(context, `${url}/plane/index.html`, "plane-webgpu");
+  const searched = await tested.textContent("#search");
+  check("plane-webgpu: WebGPU has searched to the end", searched === "WebGPU", searched);
 });
 server.close();
 broken.server.close();
