@@ -98,7 +98,63 @@ fn drawing(root: &Path, file: &Path) -> Result<String, String> {
         ));
     }
     let upper = name(file).to_uppercase();
-    Ok(format!("pub static DRAW_{upper}: &str = {source:?};\n"))
+    let glsl = match IN_BROWSERS.contains(&name(file)) {
+        true => format!(
+            "pub static GLSL_{upper}: [&str; 2] = {:?};\n",
+            glsl(&source)?
+        ),
+        false => String::new(),
+    };
+    Ok(format!(
+        "pub static DRAW_{upper}: &str = {source:?};\n{glsl}"
+    ))
+}
+
+/// The shaders that browsers without WebGPU draw with.
+const IN_BROWSERS: [&str; 3] = ["capsule", "cuboid", "ground"];
+/// What is other there: processors may have to do it, and what is written is not encoded.
+const FOR_WEBGL: [[&str; 2]; 2] = [
+    ["const TAPS = 16u;", "const TAPS = 4u;"],
+    ["const ENCODES = false;", "const ENCODES = true;"],
+];
+
+/// A shader that draws, in WebGL's language: `place`, then `paint`.
+fn glsl(source: &str) -> Result<[String; 2], String> {
+    use naga::back::glsl;
+    let mut source = source.to_string();
+    for [from, to] in FOR_WEBGL {
+        if !source.contains(from) {
+            return Err(format!("it has no `{from}` to be changed for WebGL"));
+        }
+        source = source.replace(from, to);
+    }
+    let module = naga::front::wgsl::parse_str(&source).map_err(|error| error.to_string())?;
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let info = validator
+        .validate(&module)
+        .map_err(|error| error.to_string())?;
+    let options = glsl::Options {
+        version: glsl::Version::new_gles(300),
+        writer_flags: glsl::WriterFlags::empty(),
+        ..Default::default()
+    };
+    let stage = |shader_stage, entry_point: &str| {
+        let pipeline = glsl::PipelineOptions {
+            shader_stage,
+            entry_point: entry_point.to_string(),
+            multiview: None,
+        };
+        let mut text = String::new();
+        let bounds = naga::proc::BoundsCheckPolicies::default();
+        let writer = glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, bounds);
+        let written = writer.and_then(|mut writer| writer.write());
+        written.map_err(|error| error.to_string())?;
+        Ok::<_, String>(text)
+    };
+    Ok([
+        stage(naga::ShaderStage::Vertex, "place")?,
+        stage(naga::ShaderStage::Fragment, "paint")?,
+    ])
 }
 
 /// The expanded text, parsed and found right.

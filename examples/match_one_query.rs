@@ -53,7 +53,7 @@ fn main() -> anyhow::Result<()> {
         }
     }
 
-    let nearest = index.nearest(shown, &query);
+    let nearest = matcher.nearest(shown, &query);
     let first = database.candidates[nearest.index as usize] as usize;
     let clip = database.clip(first);
     println!(

@@ -281,6 +281,14 @@ impl Sections {
     /// # Errors
     /// See [`StoreError`].
     pub fn save(&self, path: &Path, format: Format) -> Result<(), StoreError> {
+        write_whole(path, &self.to_bytes(path, format)?)
+    }
+
+    /// What [`Sections::save`] writes into the file at `path`.
+    ///
+    /// # Errors
+    /// See [`StoreError`].
+    pub fn to_bytes(&self, path: &Path, format: Format) -> Result<Vec<u8>, StoreError> {
         let mut arrays = Arrays::default();
         for (name, section) in &self.0 {
             let named = section.arrays.0.iter();
@@ -288,7 +296,7 @@ impl Sections {
             arrays.0.extend(named);
         }
         let values = self.0.iter().map(|(name, section)| (name, &section.values));
-        save(path, format, &values.collect::<BTreeMap<_, _>>(), &arrays)
+        encode(path, format, &values.collect::<BTreeMap<_, _>>(), &arrays)
     }
 
     /// Reads all sections of a file.
@@ -296,7 +304,15 @@ impl Sections {
     /// # Errors
     /// See [`StoreError`].
     pub fn load(path: &Path, format: Format) -> Result<Self, StoreError> {
-        let (values, arrays) = load::<BTreeMap<String, _>>(path, format)?;
+        Self::from_bytes(path, &read(path)?, format)
+    }
+
+    /// Reads the contents of the file at `path`.
+    ///
+    /// # Errors
+    /// See [`StoreError`].
+    pub fn from_bytes(path: &Path, bytes: &[u8], format: Format) -> Result<Self, StoreError> {
+        let (values, arrays) = decode::<BTreeMap<String, _>>(path, bytes, format)?;
         let sections = values.into_iter().map(|(name, values)| {
             let arrays = Arrays::default();
             (name, Section { values, arrays })
@@ -372,6 +388,15 @@ pub fn save<H: Serialize>(
     header: &H,
     arrays: &Arrays,
 ) -> Result<(), StoreError> {
+    write_whole(path, &encode(path, format, header, arrays)?)
+}
+
+fn encode<H: Serialize>(
+    path: &Path,
+    format: Format,
+    header: &H,
+    arrays: &Arrays,
+) -> Result<Vec<u8>, StoreError> {
     let names = arrays
         .0
         .iter()
@@ -397,7 +422,7 @@ pub fn save<H: Serialize>(
     bytes.extend(format.version.to_le_bytes());
     bytes.extend(crc32fast::hash(&rest).to_le_bytes());
     bytes.extend(rest);
-    write_whole(path, &bytes)
+    Ok(bytes)
 }
 
 /// Reads header and arrays back.
@@ -405,10 +430,21 @@ pub fn save<H: Serialize>(
 /// # Errors
 /// See [`StoreError`].
 pub fn load<H: DeserializeOwned>(path: &Path, format: Format) -> Result<(H, Arrays), StoreError> {
-    let bytes = input_file::bytes(path, MAX_BYTES).map_err(|error| StoreError::Read {
+    decode(path, &read(path)?, format)
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, StoreError> {
+    input_file::bytes(path, MAX_BYTES).map_err(|error| StoreError::Read {
         path: path.to_path_buf(),
         error,
-    })?;
+    })
+}
+
+fn decode<H: DeserializeOwned>(
+    path: &Path,
+    bytes: &[u8],
+    format: Format,
+) -> Result<(H, Arrays), StoreError> {
     let damaged = |why: &str| StoreError::Damaged {
         path: path.to_path_buf(),
         why: why.to_string(),

@@ -52,8 +52,10 @@
 //! - `train`: tasks by name, configuration, run directory, checkpoints, evaluation (`train`);
 //! - `runtime`: trained characters, stepped from somebody's own loop (`train`);
 //! - `capi`: the same from C, for game engines (`capi`);
-//! - `view`, `viewer`: scenes and the renderer that draws them; windows (`viewer`);
+//! - `view`: scenes (`train`) and the renderer that draws them (`viewer`);
+//! - `viewer`: windows (`viewer`);
 //! - `export`: policies, motion and models in files of other programs (`export`);
+//! - `web`: a run in a browser: its files, and the page that plays them (`train`);
 //! - `bench`: what each device makes of each stage (`viewer`);
 //! - [`report`]: tables; pictures and TensorBoard events (feature `report`);
 //! - [`prelude`]: the names that most programs begin with;
@@ -99,7 +101,9 @@ pub mod rl;
 pub mod runtime;
 #[cfg(feature = "train")]
 pub mod train;
-#[cfg(feature = "viewer")]
+#[cfg(feature = "train")]
 pub mod view;
 #[cfg(feature = "viewer")]
 pub mod viewer;
+#[cfg(feature = "train")]
+pub mod web;

@@ -10,7 +10,7 @@ use std::path::Path;
 /// Top-level modules from the roof to the ground; those of a line do not know each other.
 const ORDER: [&[&str]; 13] = [
     &["cli", "capi", "prelude"],
-    &["viewer"],
+    &["viewer", "web"],
     &["bench", "export"],
     &["view"],
     &["runtime"],

@@ -21,6 +21,8 @@ struct View {
 
 const SKY = vec3f(0.70, 0.77, 0.84);
 const TAPS = 16u;
+// Whether colours are written as sRGB values, where the target does not encode them itself.
+const ENCODES = false;
 
 // Share of the sun that reaches a point: taps on a spiral around its place in the shadow map.
 fn sunlight(at: vec3f, normal: vec3f) -> f32 {
@@ -40,7 +42,10 @@ fn sunlight(at: vec3f, normal: vec3f) -> f32 {
 
 fn hazy(at: vec3f, colour: vec3f) -> vec4f {
     let far = distance(at, view.eye) / view.haze;
-    return vec4f(mix(SKY, colour, exp2(-far * far)), 1.0);
+    let linear = mix(SKY, colour, exp2(-far * far));
+    if (!ENCODES) { return vec4f(linear, 1.0); }
+    let bright = 1.055 * pow(linear, vec3f(1.0 / 2.4)) - 0.055;
+    return vec4f(select(bright, 12.92 * linear, linear < vec3f(0.0031308)), 1.0);
 }
 
 // Light that a surface of a colour sends to the eye.

@@ -203,8 +203,9 @@ pub unsafe extern "C" fn footwork_database_search(
         for (i, value) in (POSE_DIM..FEATURE_DIM).zip(requested) {
             query[i] = (value - normal.mean[i]) * normal.scale[i];
         }
-        let index = &motion.matcher.index;
-        let nearest = SEARCH.with_borrow_mut(|scratch| index.nearest_with(frame, &query, scratch));
+        let matcher = &motion.matcher;
+        let nearest =
+            SEARCH.with_borrow_mut(|scratch| matcher.nearest_with(frame, &query, scratch));
         // SAFETY: the caller's promise.
         let (found, distance) = unsafe { (found.as_mut(), distance.as_mut()) };
         if let Some(found) = found {

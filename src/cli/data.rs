@@ -223,6 +223,7 @@ fn save(database: Database, path: &Path) -> Result<()> {
         "the database was written, the index of the search beside it was not, and every training will build it anew",
     )?;
     let MotionMatcher { database, index } = matcher;
+    let index_bytes = index.map_or(0, |index| index.bytes());
     say!(
         "{}: {} clips, {:.1} minutes, {} candidates, fingerprint {:08x}; beside it the search's index, {:.1} MB",
         path.display(),
@@ -230,7 +231,7 @@ fn save(database: Database, path: &Path) -> Result<()> {
         database.minutes(),
         database.candidates.len(),
         database.fingerprint,
-        index.bytes() as f64 / 1e6,
+        index_bytes as f64 / 1e6,
     );
     Ok(())
 }

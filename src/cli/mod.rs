@@ -24,6 +24,7 @@ mod train;
 mod usage;
 #[cfg(feature = "viewer")]
 mod watch;
+mod web;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
@@ -60,6 +61,8 @@ enum Command {
     /// Draw what a trained policy does, to files
     #[cfg(feature = "viewer")]
     Render(render::Render),
+    /// Write a page in which a trained policy runs, for any browser
+    Web(web::Web),
     /// Let simulated bodies move by random actions: throughput and statistics
     Sim(sim::Sim),
     /// Measure what each device makes of each stage
@@ -88,6 +91,7 @@ impl Command {
             Command::Play(play) => play.run(),
             #[cfg(feature = "viewer")]
             Command::Render(render) => render.run(),
+            Command::Web(web) => web.run(),
             Command::Sim(sim) => sim.run(),
             #[cfg(feature = "viewer")]
             Command::Bench(bench) => bench.run(),

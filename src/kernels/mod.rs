@@ -8,10 +8,12 @@
 //! - [`learn`]: sampling, advantages, and the gradient step of dense networks;
 //! - [`self_play`]: bouts against policies that learn no more;
 //! - [`mod@bench`]: what a device could do at most;
+//! - [`fma`]: multiplication and addition in one;
 //! - [`rng`]: counter-based random numbers that shaders and twins share;
 //! - [`termination`]: how a step ends.
 
 pub mod bench;
+pub mod fma;
 pub mod humanoid;
 pub mod learn;
 pub mod locomotion;

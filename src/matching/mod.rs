@@ -21,7 +21,7 @@
 //! let frame = matcher.database.candidates[40];
 //! let mut query = matcher.database.features[frame as usize];
 //! query[27] = 1.0; // the last number of a query's row
-//! let nearest = matcher.index.nearest(frame, &query);
+//! let nearest = matcher.nearest(frame, &query);
 //! assert_eq!((nearest.index, nearest.distance), (40, 0.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

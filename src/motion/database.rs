@@ -374,14 +374,16 @@ fn pad(row: &[f32; FEATURE_DIM]) -> [f32; ROW_STRIDE] {
     std::array::from_fn(|i| if i < FEATURE_DIM { row[i] } else { 0.0 })
 }
 
-fn candidates(clips: &[ClipRecord]) -> Vec<u32> {
+/// The frames of clips that can be matched, ascending.
+pub fn candidates(clips: &[ClipRecord]) -> Vec<u32> {
     clips
         .iter()
         .flat_map(|clip| clip.first as u32..(clip.first + clip.frames - MIN_FUTURE_FRAMES) as u32)
         .collect()
 }
 
-fn root_motion(path: &[[f32; 4]], frame: usize) -> RootMotion {
+/// The motion of the six frames from `frame` on, along a path of x, z (m), heading x, heading z.
+pub fn root_motion(path: &[[f32; 4]], frame: usize) -> RootMotion {
     let [x, z, hx, hz] = path[frame];
     let [x6, z6, hx6, hz6] = path[frame + FRAMES_PER_STEP];
     let heading = [hx, hz];

@@ -4,9 +4,10 @@ use crate::motion::database::Database;
 use crate::motion::roles::Roles;
 use crate::motion::skeleton::Skeleton;
 use glam::{Quat, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// Joints and geometry of a leg.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LegJoints {
     /// The hip joint.
     pub hip: usize,

@@ -104,6 +104,11 @@ impl Player {
         }
     }
 
+    /// Goes on with the same motion in another place, where there may be more of it.
+    pub fn set_database(&mut self, database: &Arc<Database>, feet: &Arc<Feet>) {
+        (self.database, self.feet) = (database.clone(), feet.clone());
+    }
+
     /// The pose of the next frame: of the same clip, or of wherever a match has jumped to.
     pub fn next(&mut self, shown: PlacedFrame) -> &CharacterPose {
         self.stitch.advance();

@@ -220,8 +220,9 @@ impl Character {
             &self.params.build_query(0),
         );
         let frame = self.state_u32[state_u32::FRAME];
-        let index = &motion.matcher.index;
-        let found = index.nearest_with(frame, &self.query, &mut scratch.search);
+        let found = motion
+            .matcher
+            .nearest_with(frame, &self.query, &mut scratch.search);
         self.requested = from.requested(database, &self.query);
         advance_and_reward::twin(
             &database.candidates,

@@ -1,7 +1,7 @@
 //! One character under a controller, frame by frame, for somebody to watch.
 
 use super::controller::Controller;
-use super::evaluate::{advance, episodes, send_elsewhere};
+use super::evaluate::{episodes, send_elsewhere};
 use super::rendered_frames::standing;
 use crate::env::locomotion::cpu::CpuLocomotion;
 use crate::env::locomotion::{LEVELS, LocomotionTask};
@@ -71,6 +71,25 @@ pub struct Step {
     maps: Vec<u32>,
 }
 
+/// What a step was begun with.
+#[derive(Clone, Debug)]
+struct Before {
+    from: PlacedFrame,
+    boxes: Vec<f32>,
+    maps: Vec<u32>,
+}
+
+/// What the next frame waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Due {
+    /// For a query and its match: a step is over.
+    Query,
+    /// Only to be shown.
+    Frame,
+    /// It is shown already: an episode has begun.
+    Nothing,
+}
+
 /// The character at one frame, and all that decides the next ones.
 #[derive(Clone)]
 pub struct Playthrough {
@@ -86,6 +105,8 @@ pub struct Playthrough {
     pub shown: PlacedFrame,
     /// The shown pose.
     pub pose: CharacterPose,
+    /// While a query waits for its match.
+    before: Option<Before>,
     player: Player,
 }
 
@@ -105,6 +126,7 @@ impl Playthrough {
             played: FRAMES_PER_STEP,
             shown,
             pose: shown.pose(context.database()),
+            before: None,
             player: Player::new(database, feet, context.style, shown),
         }
     }
@@ -119,39 +141,61 @@ impl Playthrough {
         context: &PlaythroughContext,
         controller: &dyn Controller,
     ) -> Result<()> {
-        if self.played == FRAMES_PER_STEP {
-            match self
-                .step
-                .as_ref()
-                .map_or(termination::RUNNING, |step| step.termination)
-            {
-                termination::FAILED => {
-                    *self = Playthrough::new(context, self.episode + 1);
-                    return Ok(());
-                }
-                termination::SUCCESS => send_elsewhere(&mut self.env, 0),
-                _ => {}
+        match self.due(context) {
+            Due::Query => {
+                self.query(controller)?;
+                self.env.search();
+                self.play_match(context);
+                self.show_next(context);
             }
-            self.decide(context, controller)?;
+            Due::Frame => self.show_next(context),
+            Due::Nothing => {}
         }
-        let Some(step) = &self.step else {
-            return Ok(());
-        };
-        self.played += 1;
-        // A match changes the frame alone: the character stays where it is.
-        let from = PlacedFrame {
-            frame: step.matched,
-            ..step.from
-        };
-        self.shown = from.on(context.database(), self.played as isize);
-        self.pose.clone_from(self.player.next(self.shown));
         Ok(())
     }
 
-    fn decide(&mut self, context: &PlaythroughContext, controller: &dyn Controller) -> Result<()> {
-        let (from, boxes) = (standing(&self.env, 0), self.env.boxes.clone());
-        let maps = self.env.maps.clone();
-        advance(&mut self.env, controller)?;
+    /// What the next frame waits for. What has ended is begun anew: see [`Playthrough::advance`].
+    pub fn due(&mut self, context: &PlaythroughContext) -> Due {
+        if self.played < FRAMES_PER_STEP {
+            return Due::Frame;
+        }
+        let ended = self.step.as_mut().map(|step| &mut step.termination);
+        match ended {
+            Some(&mut termination::FAILED) => {
+                *self = Playthrough::new(context, self.episode + 1);
+                return Due::Nothing;
+            }
+            Some(ended @ &mut termination::SUCCESS) => {
+                *ended = termination::RUNNING;
+                send_elsewhere(&mut self.env, 0);
+            }
+            _ => {}
+        }
+        Due::Query
+    }
+
+    /// Begins a step: lets the controller say what to search for, [`CpuLocomotion::queries`].
+    ///
+    /// # Errors
+    /// The controller's.
+    pub fn query(&mut self, controller: &dyn Controller) -> Result<()> {
+        self.before = Some(Before {
+            from: standing(&self.env, 0),
+            boxes: self.env.boxes.clone(),
+            maps: self.env.maps.clone(),
+        });
+        let observation = self.env.observation();
+        let action = controller.act(&observation, self.env.params.observation_dim())?;
+        self.env.build_queries(&action);
+        Ok(())
+    }
+
+    /// Goes on with a step by the frame that the search has found, [`CpuLocomotion::matched`].
+    pub fn play_match(&mut self, context: &PlaythroughContext) {
+        let Some(Before { from, boxes, maps }) = self.before.take() else {
+            return;
+        };
+        self.env.play_matches();
         self.step = Some(Step {
             requested: from.requested(context.database(), &self.env.queries[0]),
             matched: context.database().candidates[self.env.matched[0] as usize] as usize,
@@ -161,7 +205,27 @@ impl Playthrough {
             maps,
         });
         self.played = 0;
-        Ok(())
+    }
+
+    /// Shows the next frame of the running step.
+    pub fn show_next(&mut self, context: &PlaythroughContext) {
+        let Some(step) = &self.step else {
+            return;
+        };
+        self.played += 1;
+        // A match changes the frame alone: the character stays where it is.
+        let from = PlacedFrame {
+            frame: step.matched,
+            ..step.from
+        };
+        self.shown = from.on(context.database(), self.played as isize);
+        self.pose.clone_from(self.player.next(self.shown));
+    }
+
+    /// Goes on with the same motion in another place: the context's, which has all frames of the present one.
+    pub fn set_context(&mut self, context: &PlaythroughContext) {
+        self.env.set_matcher(&context.matcher);
+        self.player.set_database(context.database(), &context.feet);
     }
 
     /// The obstacle maps that were observed before the running step.
@@ -172,6 +236,12 @@ impl Playthrough {
     /// The target on the ground, m.
     pub fn target(&self) -> [f32; 2] {
         [state_f32::TARGET_X, state_f32::TARGET_Z].map(|field| self.env.field(field, 0))
+    }
+
+    /// Whether the running step ends at the target.
+    pub fn has_arrived(&self) -> bool {
+        let step = self.step.as_ref();
+        step.is_some_and(|step| step.termination == termination::SUCCESS)
     }
 
     /// Puts the target elsewhere on the ground, m.

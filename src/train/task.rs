@@ -20,6 +20,7 @@ use crate::env::humanoid::driver::BodyDriver;
 use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::nn::{ActorCritic, Policy};
+use crate::physics::motion_library::MotionLibrary;
 use crate::rl::Algorithm;
 use crate::rl::amp::discriminator::network;
 use crate::rl::ase::FrozenLowLevel;
@@ -45,6 +46,8 @@ pub struct TaskEntry {
     pub takes_motions: bool,
     /// Loads the data.
     pub load: fn(&Config) -> Result<Loaded>,
+    /// The task with recordings that are loaded already, of tasks that take a motion list and steer nothing.
+    pub with_recordings: Option<fn(&Config, MotionLibrary) -> Result<Box<dyn Task>>>,
     /// Comparisons of variants that `footwork ablate` knows.
     pub ablations: &'static [Ablation],
 }

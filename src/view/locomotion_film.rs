@@ -3,11 +3,11 @@
 use super::camera::{Camera, FOLLOW};
 use super::debug_draw::scene;
 use super::film::Film;
-use crate::train::playthrough::{Playthrough, PlaythroughContext};
 use super::render_target::RenderTarget;
 use super::renderer::Renderer;
 use crate::gpu::Gpu;
 use crate::nn::Policy;
+use crate::train::playthrough::{Playthrough, PlaythroughContext};
 use anyhow::Result;
 
 /// A playthrough before a camera.

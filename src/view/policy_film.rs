@@ -4,12 +4,12 @@ use super::body_film::BodyFilm;
 use super::camera::Camera;
 use super::film::gif;
 use super::locomotion_film::LocomotionFilm;
-use crate::train::playthrough::PlaythroughContext;
 use super::recorded_bout::recorded_episode;
 use crate::gpu::Gpu;
 use crate::nn::Policy;
 use crate::playback::player::Style;
 use crate::train::body_episodes::BodyEpisodes;
+use crate::train::playthrough::PlaythroughContext;
 use crate::train::task::Task;
 use anyhow::Result;
 

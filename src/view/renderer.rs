@@ -4,33 +4,11 @@ use super::camera::Camera;
 use super::painter::{Drawable, Layouts, Mesh, Painter, Pass, Pipelines, vertex_buffer};
 use super::render_target::{DEPTH, RenderTarget};
 use super::scene::{Capsule, Cuboid, Scene};
+use super::sunlight::{PassView, SHADOWS, SKY};
 use crate::gpu::Gpu;
 use crate::gpu::shader::{DRAW_CAPSULE, DRAW_CUBOID, DRAW_GROUND};
 use crate::playback::meshes::{cube, sphere};
-use bytemuck::{Pod, Zeroable};
-use glam::camera::rh::proj::directx::orthographic;
-use glam::camera::rh::view::look_at_mat4;
-use glam::{Mat4, Vec3};
 use wgpu::vertex_attr_array as attributes;
-
-/// Side of the shadow map, pixels.
-const SHADOWS: u32 = 2048;
-/// Width of the shadows' soft edge, m.
-const SOFT: f32 = 0.045;
-/// Towards the sun.
-const SUN: Vec3 = Vec3::new(-0.45, 0.80, 0.40);
-
-/// `View` of `shaders/shared/light.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct View {
-    clip: [[f32; 4]; 4],
-    sunlit: [[f32; 4]; 4],
-    eye: [f32; 3],
-    haze: f32,
-    sun: [f32; 3],
-    soft: f32,
-}
 
 /// A pass's view on the device.
 struct Bound {
@@ -111,20 +89,9 @@ impl Renderer {
         let (device, queue) = (&self.device, &self.queue);
         self.capsules.set(device, queue, &scene.capsules);
         self.cuboids.set(device, queue, &scene.cuboids);
-        let reach = 1.6 * camera.distance.max(2.5);
-        let sunlit = sunlit(camera.focus, reach);
-        let mut view = View {
-            clip: sunlit.to_cols_array_2d(),
-            sunlit: sunlit.to_cols_array_2d(),
-            eye: camera.eye().to_array(),
-            haze: 40.0 + 4.0 * camera.distance,
-            sun: SUN.normalize().to_array(),
-            // At least a pixel and a half, so that edges never show steps.
-            soft: (SOFT / (2.0 * reach)).max(1.5 / SHADOWS as f32),
-        };
-        queue.write_buffer(&self.sun.buffer, 0, bytemuck::bytes_of(&view));
-        view.clip = camera.clip(target.aspect()).to_cols_array_2d();
-        queue.write_buffer(&self.camera.buffer, 0, bytemuck::bytes_of(&view));
+        let [sun, own] = PassView::of(camera, target.aspect());
+        queue.write_buffer(&self.sun.buffer, 0, bytemuck::bytes_of(&sun));
+        queue.write_buffer(&self.camera.buffer, 0, bytemuck::bytes_of(&own));
         let mut encoder = device.create_command_encoder(&Default::default());
         self.cast(&mut encoder, beside);
         self.paint(&mut encoder, beside, target);
@@ -151,12 +118,8 @@ impl Renderer {
         beside: Option<&dyn Drawable>,
         target: &RenderTarget,
     ) {
-        let sky = wgpu::Color {
-            r: 0.70,
-            g: 0.77,
-            b: 0.84,
-            a: 1.0,
-        };
+        let [r, g, b] = SKY;
+        let sky = wgpu::Color { r, g, b, a: 1.0 };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("picture"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -181,27 +144,6 @@ impl Renderer {
         pass.set_pipeline(self.ground.of(Pass::Paint));
         pass.draw(0..4, 0..1);
     }
-}
-
-/// World to the shadow map's clip space: a square of half side `reach` around `focus`. It moves in
-/// whole pixels, so that edges do not crawl while the camera follows.
-fn sunlit(focus: Vec3, reach: f32) -> Mat4 {
-    let look = look_at_mat4(SUN.normalize(), Vec3::ZERO, Vec3::Y);
-    let pixel = 2.0 * reach / SHADOWS as f32;
-    let at = look.transform_point3(focus);
-    let (x, y) = (
-        (at.x / pixel).round() * pixel,
-        (at.y / pixel).round() * pixel,
-    );
-    let depth = 2.0 * reach + 20.0;
-    orthographic(
-        x - reach,
-        x + reach,
-        y - reach,
-        y + reach,
-        -at.z - depth,
-        -at.z + depth,
-    ) * look
 }
 
 fn capsules(device: &wgpu::Device, layouts: &Layouts) -> Painter {
@@ -309,7 +251,7 @@ fn shadows(
 fn bound(device: &wgpu::Device, layout: &wgpu::BindGroupLayout) -> Bound {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("view"),
-        size: size_of::<View>() as u64,
+        size: size_of::<PassView>() as u64,
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });

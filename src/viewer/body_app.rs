@@ -10,20 +10,16 @@ use crate::env::humanoid::task::DT;
 use crate::gpu::Gpu;
 use crate::train::body_policy::BodyPolicy;
 use crate::view::Camera;
+use crate::view::body_grip::{BodyGrip, centres};
 use crate::view::body_playthrough::{BodyContext, BodyPlaythrough, BodyPush};
-use crate::view::body_scene::{ARROW, BodyExtras, body_scene};
+use crate::view::body_scene::{BodyExtras, body_scene};
 use crate::view::camera::{FOLLOW, Ray};
 use crate::view::latent_map::LatentMap;
-use crate::view::shapes::{self, seen, simulated};
+use crate::view::shapes::{self, simulated};
 use anyhow::{Context, Result};
 use eframe::egui::{self, Ui};
 use eframe::egui_wgpu::RenderState;
 use glam::Vec3;
-
-/// Farthest from a body's centre that the pointer takes hold of it, m.
-const GRIP: f32 = 0.2;
-/// The hardest push, N.
-const HARDEST: f32 = 500.0;
 
 /// The window of `play` of a simulated body.
 pub struct BodyViewer {
@@ -38,8 +34,7 @@ pub struct BodyViewer {
     skills: Option<SkillsPanel>,
     /// The panel of a bout.
     bout: Option<BoutPanel>,
-    /// The body that the pointer has hold of, and where the pointer is.
-    grip: Option<(usize, Ray)>,
+    grip: Option<BodyGrip>,
     /// What went wrong last.
     problem: Option<String>,
     screen: Screen,
@@ -244,7 +239,7 @@ impl BodyViewer {
         ui.label(format!("{:.2} s", now.steps as f32 * DT));
         ui.label(format!("reward {:.2}", now.reward));
         if let [own, target] = &self.context.model().trees[..] {
-            let centres = self.centres();
+            let centres = centres(self.context.model(), &now.q);
             let far = centres[target.bodies.start].distance(centres[own.bodies.start]);
             let what = self.bout.as_ref().map_or("target", |_| "opponent");
             ui.label(format!("{what} {far:.1} m away"));
@@ -274,11 +269,12 @@ impl BodyViewer {
         match touch {
             Some(PointerAction::Click(ray)) => self.move_target(&ray),
             Some(PointerAction::Press(ray)) => {
-                self.grip = self.body_at(&ray).map(|body| (body, ray));
+                let (model, now) = (self.context.model(), self.timeline.now());
+                self.grip = BodyGrip::take(model, &now.q, &ray);
             }
             Some(PointerAction::Drag(ray)) => {
-                if let Some((_, at)) = &mut self.grip {
-                    *at = ray;
+                if let Some(grip) = &mut self.grip {
+                    grip.ray = ray;
                     self.timeline.change();
                 }
             }
@@ -301,30 +297,9 @@ impl BodyViewer {
         self.succeeded(moved);
     }
 
-    /// The body that is nearest to where the pointer is.
-    fn body_at(&self, ray: &Ray) -> Option<usize> {
-        let distances = self.centres().into_iter().map(|at| ray.distance(at));
-        let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
-        nearest.filter(|(_, far)| *far < GRIP).map(|(body, _)| body)
-    }
-
-    /// Centres of mass in the scene.
-    fn centres(&self) -> Vec<Vec3> {
-        let model = self.context.model();
-        let poses = shapes::poses(model, &self.timeline.now().q);
-        let bodies = model.bodies.iter().zip(&poses);
-        bodies.map(|(body, pose)| seen(pose.at(body.com))).collect()
-    }
-
-    /// The push of the body that is held, towards the pointer: its arrow ends there.
+    /// The push of the body that is held.
     fn push(&self) -> Option<BodyPush> {
-        let (body, ray) = self.grip?;
-        let centre = self.centres()[body];
-        let towards = ray.plane(centre, self.camera.focus - self.camera.eye())?;
-        let force = simulated(towards - centre) / ARROW;
-        Some(BodyPush {
-            body,
-            force: force.clamp_length_max(HARDEST),
-        })
+        let (model, now) = (self.context.model(), self.timeline.now());
+        self.grip?.push(model, &now.q, &self.camera)
     }
 }

@@ -146,6 +146,13 @@ impl CpuLocomotion {
 
     /// Plays one step without resetting what it ended. `action` is `[envs][TRAJECTORY_DIM]`.
     pub fn step_without_reset(&mut self, action: &[f32]) {
+        self.build_queries(action);
+        self.search();
+        self.play_matches();
+    }
+
+    /// Begins a step: `action` is `[envs][TRAJECTORY_DIM]`.
+    pub fn build_queries(&mut self, action: &[f32]) {
         let obstacles = self.params.task.obstacles() > 0;
         if obstacles {
             hits::twin(
@@ -164,10 +171,18 @@ impl CpuLocomotion {
             &mut self.queries,
             &self.params.build_query(0),
         );
+    }
+
+    /// Finds the candidates nearest to the queries.
+    pub fn search(&mut self) {
         let frames = &self.state_u32[state_u32::FRAME * self.params.envs..][..self.params.envs];
         self.matcher
-            .index
             .nearest_all(frames, &self.queries, &mut self.matched);
+    }
+
+    /// Plays a step to its end with the candidates that were found.
+    pub fn play_matches(&mut self) {
+        let obstacles = self.params.task.obstacles() > 0;
         if obstacles {
             obstacle_collision::twin(
                 &self.matcher.database.candidates,
@@ -198,6 +213,12 @@ impl CpuLocomotion {
         if obstacles {
             self.rasterize_maps(false);
         }
+    }
+
+    /// Goes on with the same motion in another place, where there may be more of it.
+    pub fn set_matcher(&mut self, matcher: &Arc<MotionMatcher>) {
+        self.matcher = matcher.clone();
+        self.params.candidates = matcher.database.candidates.len();
     }
 
     /// One number of the floating-point state.

@@ -6,6 +6,7 @@ pub mod search_argmin;
 pub mod search_exact;
 pub mod search_index;
 pub mod search_leaves;
+pub mod search_one;
 pub mod search_prune;
 pub mod search_score_lanes;
 pub mod search_score_tiled;

@@ -2,6 +2,7 @@
 
 use crate::gpu::groups;
 use crate::gpu::{Buffer, Gpu, shader};
+use crate::kernels::fma::mul_add;
 use crate::motion::features::{FEATURE_DIM, ROW_STRIDE};
 
 /// Sizes of a whole search.
@@ -104,7 +105,7 @@ pub fn squared(row: &[f32; ROW_STRIDE], query: &[f32; ROW_STRIDE]) -> f32 {
     let mut sum = [0.0f32; 4];
     for i in 0..FEATURE_DIM {
         let d = row[i] - query[i];
-        sum[i % 4] = d.mul_add(d, sum[i % 4]);
+        sum[i % 4] = mul_add(d, d, sum[i % 4]);
     }
     (sum[0] + sum[1]) + (sum[2] + sum[3])
 }

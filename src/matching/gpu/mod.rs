@@ -25,11 +25,11 @@ pub enum GpuSearch {
 impl GpuSearch {
     /// The search for batches of `count` queries.
     pub fn new(gpu: &Gpu, matcher: &MotionMatcher, count: usize) -> Self {
-        match gpu.software {
-            true => GpuSearch::Indexed(IndexedSearch::new(gpu, &matcher.index, count)),
-            false => {
-                GpuSearch::BruteForce(BruteForceSearch::new(gpu, &matcher.database.rows(), count))
+        match &matcher.index {
+            Some(index) if gpu.software => {
+                GpuSearch::Indexed(IndexedSearch::new(gpu, index, count))
             }
+            _ => GpuSearch::BruteForce(BruteForceSearch::new(gpu, &matcher.database.rows(), count)),
         }
     }
 

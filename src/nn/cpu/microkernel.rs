@@ -4,6 +4,7 @@
 //! block in vector registers and then stores it. Summing and storing are apart, and blocks have
 //! no more than eight rows, because only then does the compiler keep the sums in registers.
 
+use crate::kernels::fma::mul_add;
 use multiversion::{multiversion, target::target_cfg_f};
 
 /// A block of a matrix of results.
@@ -220,7 +221,7 @@ fn accumulate<const ROWS: usize, const LANES: usize>(
 #[inline(always)]
 fn fma_row<const LANES: usize>(sums: &mut [f32; LANES], value: f32, weights: &[f32; LANES]) {
     for (sum, weight) in sums.iter_mut().zip(weights) {
-        *sum = value.mul_add(*weight, *sum);
+        *sum = mul_add(value, *weight, *sum);
     }
 }
 

@@ -1,5 +1,6 @@
 //! The hyperbolic tangent, many at a time.
 
+use crate::kernels::fma::mul_add;
 use multiversion::multiversion;
 
 /// Beyond this it is 1 in f32.
@@ -17,7 +18,7 @@ pub fn tanh(values: &mut [f32]) {
         // seven terms of the series are enough. NaN passes through.
         let y = 2.0 * value.clamp(-FLAT, FLAT);
         let whole = (y * std::f32::consts::LOG2_E).round_ties_even();
-        let rest = (-whole).mul_add(std::f32::consts::LN_2, y);
+        let rest = mul_add(-whole, std::f32::consts::LN_2, y);
         const TERMS: [f32; 7] = [
             1.0 / 720.0,
             1.0 / 120.0,
@@ -29,10 +30,10 @@ pub fn tanh(values: &mut [f32]) {
         ];
         let series = TERMS
             .iter()
-            .fold(1.0 / 5040.0, |sum: f32, term| sum.mul_add(rest, *term));
+            .fold(1.0 / 5040.0, |sum: f32, term| mul_add(sum, rest, *term));
         // At most 27 either way: the exponent has room.
         let power = f32::from_bits(((whole as i32 + 127) as u32) << 23);
-        *value = 1.0 - 2.0 / series.mul_add(power, 1.0);
+        *value = 1.0 - 2.0 / mul_add(series, power, 1.0);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The task `box`: two simulated bodies learn to fight each other, by self-play.
 
-use super::motion_training::{MotionTask, load};
+use super::motion_training::{MotionTask, load, with_recordings};
 use super::motions::Performance;
 use super::presets::{discriminator, steering, styled};
 use crate::env::EnvSpec;
@@ -32,6 +32,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     spec: check,
     takes_motions: true,
     load: |config| load::<BoxTask>(config, scenes::humanoid()),
+    with_recordings: Some(with_recordings::<BoxTask>),
     ablations: &[ABLATION],
 };
 

@@ -1,6 +1,6 @@
 //! The task `imitate`: a simulated body moves like recordings, which a discriminator judges.
 
-use super::motion_training::{MotionTask, load};
+use super::motion_training::{MotionTask, load, with_recordings};
 use super::motions::Performance;
 use super::presets::{discriminator, styled};
 use crate::env::EnvSpec;
@@ -24,6 +24,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     spec: check,
     takes_motions: true,
     load: |config| load::<Imitate>(config, scenes::humanoid()),
+    with_recordings: Some(with_recordings::<Imitate>),
     ablations: &[],
 };
 

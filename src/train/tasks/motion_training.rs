@@ -133,6 +133,21 @@ pub fn load<T: MotionTask>(config: &Config, body: Model) -> Result<Loaded> {
     })
 }
 
+/// A task of recordings that are loaded already.
+///
+/// # Errors
+/// A wrong choice.
+pub fn with_recordings<T: MotionTask>(
+    config: &Config,
+    library: MotionLibrary,
+) -> Result<Box<dyn Task>> {
+    Ok(Box::new(MotionTraining {
+        task: T::of(config)?,
+        library: Arc::new(library),
+        low_level: None,
+    }))
+}
+
 impl<T: MotionTask> MotionTraining<T> {
     fn rate(&self, policy: &Policy, episodes: usize) -> T::Report {
         let task = self.task.judged(&self.library, EPISODES_SEED);

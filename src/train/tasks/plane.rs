@@ -28,6 +28,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     spec,
     takes_motions: false,
     load,
+    with_recordings: None,
     ablations: &[],
 };
 

@@ -2,7 +2,7 @@
 //! recordings.
 
 use super::imitate::fidelity_measures;
-use super::motion_training::{MotionTask, load};
+use super::motion_training::{MotionTask, load, with_recordings};
 use super::motions::Performance;
 use super::presets::{discriminator, steering, styled};
 use crate::env::EnvSpec;
@@ -32,6 +32,7 @@ pub const PUNCH: TaskEntry = TaskEntry {
     spec: check,
     takes_motions: true,
     load: |config| load::<TargetTask>(config, scenes::humanoid()),
+    with_recordings: Some(with_recordings::<TargetTask>),
     ablations: &[ABLATION],
 };
 

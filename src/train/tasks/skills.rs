@@ -1,7 +1,7 @@
 //! The task `skills`: a simulated body moves like recordings, differently under every latent.
 
 use super::imitate::fidelity_measures;
-use super::motion_training::{MotionTask, load};
+use super::motion_training::{MotionTask, load, with_recordings};
 use super::motions::Performance;
 use super::presets::{discriminator, styled};
 use crate::env::EnvSpec;
@@ -27,6 +27,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     spec: check,
     takes_motions: true,
     load: |config| load::<Skills>(config, scenes::humanoid()),
+    with_recordings: Some(with_recordings::<Skills>),
     ablations: &[],
 };
 

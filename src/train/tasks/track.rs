@@ -1,7 +1,7 @@
 //! The task `track`: a simulated body follows recordings moment by moment.
 
 use super::imitate::fidelity_measures;
-use super::motion_training::{MotionTask, load};
+use super::motion_training::{MotionTask, load, with_recordings};
 use super::motions::Performance;
 use super::presets::styled;
 use crate::env::EnvSpec;
@@ -25,6 +25,7 @@ pub const ENTRY: TaskEntry = TaskEntry {
     spec: check,
     takes_motions: true,
     load: |config| load::<Tracking>(config, scenes::humanoid()),
+    with_recordings: Some(with_recordings::<Tracking>),
     ablations: &[],
 };
 
