@@ -18,7 +18,7 @@ const FACES = [
 ];
 
 export class Canvas2d {
-  name = "canvas, on the processor";
+  name = "canvas (CPU)";
 
   constructor(canvas) {
     this.canvas = canvas;

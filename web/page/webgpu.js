@@ -6,7 +6,9 @@ const SHADOWS = 2048; // side of the shadow map, pixels
 const SAMPLES = 4;
 const CAPSULE = [18, 5]; // corners around a capsule, rings from its middle up
 const DEPTH = "depth32float";
-const SKY = { r: 0.7, g: 0.77, b: 0.84, a: 1 };
+const SKY = { r: 0.855, g: 0.894, b: 0.929, a: 1 }; // sRGB
+// Not every driver encodes what is written through another view of a canvas: the shaders do.
+const ENCODES = ["const ENCODES = false;", "const ENCODES = true;"];
 
 export class WebGpu {
   name = "WebGPU";
@@ -14,9 +16,8 @@ export class WebGpu {
   constructor(canvas, device, shaders, module) {
     Object.assign(this, { canvas, device });
     this.context = canvas.getContext("webgpu");
-    const format = navigator.gpu.getPreferredCanvasFormat();
-    this.format = `${format}-srgb`;
-    this.context.configure({ device, format, viewFormats: [this.format] });
+    this.format = navigator.gpu.getPreferredCanvasFormat();
+    this.context.configure({ device, format: this.format });
     this.layouts();
     const vertices = (formats, stepMode, first) => {
       let offset = 0;
@@ -71,7 +72,7 @@ export class WebGpu {
 
   pipeline(code, buffers, pass) {
     const { device } = this;
-    const module = device.createShaderModule({ code });
+    const module = device.createShaderModule({ code: code.replace(...ENCODES) });
     const paints = pass === "paint";
     const bias = paints ? 0 : 2;
     return device.createRenderPipeline({
@@ -119,7 +120,7 @@ export class WebGpu {
     const paint = encoder.beginRenderPass({
       colorAttachments: [{
         view: this.samples,
-        resolveTarget: this.context.getCurrentTexture().createView({ format: this.format }),
+        resolveTarget: this.context.getCurrentTexture().createView(),
         clearValue: SKY,
         loadOp: "clear",
         storeOp: "discard",
