@@ -66,8 +66,8 @@ fn what_cannot_be_exported_is_refused() {
             2,
             &["a similar value exists: 'onnx'"],
         ),
-        ("run --out a.onnx", 2, &["--format"]),
-        ("run --format onnx", 2, &["--out"]),
+        ("run --out a.onnx", 2, &["required arguments"]),
+        ("run --format onnx", 2, &["required arguments"]),
         (
             "run --format onnx --out mine.onnx",
             1,
