@@ -60,11 +60,12 @@ fn attentive() -> UntrainedRun {
     let mut run = Files::new().run("stand");
     run.name = "stand-attentive".into();
     let rest = run.task.body().unwrap().open(0).task().rest_action();
-    let parameters = &mut run.checkpoint.policy.parameters;
-    parameters.iter_mut().for_each(|value| *value *= 0.5);
-    // The last biases are before the standard deviations.
-    let biases = parameters.len() - 2 * rest.len();
-    parameters[biases..][..rest.len()].copy_from_slice(&rest);
+    let policy = &mut run.checkpoint.policy;
+    let last = policy.networks().actor.layers().last().unwrap();
+    let (weights, biases) = (last.weights(), last.biases());
+    let weights = &mut policy.parameters[weights];
+    weights.iter_mut().for_each(|value| *value *= 0.08);
+    policy.parameters[biases].copy_from_slice(&rest);
     run
 }
 
@@ -120,7 +121,7 @@ fn a_policy_moves_its_body_in_mujoco_as_here() {
     for (step, (found, wanted)) in rows.zip(played(&run, steps)).enumerate() {
         let away = found.iter().zip(&wanted).map(|(a, b)| (a - b).abs());
         let away = away.fold(0.0, f32::max);
-        assert!(away < 0.01, "step {step}: {away}");
+        assert!(away < 0.02, "step {step}: {away}");
     }
 }
 
