@@ -19,8 +19,8 @@ use crate::train::tasks::find;
 use anyhow::Result;
 use std::sync::Arc;
 
-/// Environments of a batch.
-const ENVS: [usize; 3] = [256, 1024, 4096];
+/// Environments of a batch: the constraints of more need buffers of over 128 MiB, which not every device has.
+const ENVS: [usize; 2] = [128, 512];
 /// Policies of a pool.
 const POOLS: [(&str, usize); 2] = [("one opponent", 1), ("four opponents", 4)];
 /// Length of a bout, s, and steps until every environment has met somebody of the pool.
