@@ -220,15 +220,6 @@ impl VecEnv for SelfPlayEnv {
         Ok(Vec::new())
     }
 
-    fn restart(&mut self, which: &[bool]) -> Result<()> {
-        self.inner.restart(which)?;
-        self.step_counter += 1;
-        for env in (0..which.len()).filter(|&env| which[env]) {
-            self.bouts[env] = self.draw(env);
-        }
-        Ok(())
-    }
-
     fn observe(&mut self, out: &mut Array, at: usize) {
         self.inner.observe(&mut self.observation, 0);
         let (device, dim) = (&self.device, self.spec.observation.dim());
