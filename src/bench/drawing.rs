@@ -8,9 +8,9 @@ use crate::env::live_view::LiveView;
 use crate::env::locomotion::{EnvConfig, LEVELS, LocomotionTask, Obstacles, Plane};
 use crate::gpu::{Device, Gpu};
 use crate::playback::player::Style;
+use crate::train::playthrough::{Playthrough, PlaythroughContext};
 use crate::view::debug_draw::scene;
 use crate::view::painter::Drawable;
-use crate::view::playthrough::{Playthrough, PlaythroughContext};
 use crate::view::{Camera, Crowd, RenderTarget, Renderer, Scene};
 use anyhow::{Context, Result};
 

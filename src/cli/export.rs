@@ -1,12 +1,13 @@
 //! `footwork export`.
 
+use super::Usage;
 use super::run::{Moved, Run};
 use super::say::say;
 use anyhow::{Result, bail};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use footwork::container::write_whole;
-use footwork::export::{ExportFormat, FORMATS, TrainedRun, export};
+use footwork::export::{Excerpt, ExportFormat, FORMATS, TrainedRun, export};
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -28,6 +29,12 @@ pub struct Export {
     /// Where the low level is now that the run steers, if it has been moved
     #[arg(long, value_name = "RUN")]
     skills: Option<PathBuf>,
+    /// Which of the evaluation's episodes, of motion [default: 0]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    episode: Option<usize>,
+    /// Length of the motion, s, unless the episode ends before [default: 6]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    seconds: Option<f32>,
 }
 
 /// A format by name.
@@ -42,6 +49,7 @@ fn formats() -> impl TypedValueParser<Value = &'static ExportFormat> {
 
 impl Export {
     pub fn run(self) -> Result<()> {
+        let excerpt = self.excerpt()?;
         self.check_out()?;
         let moved = Moved {
             data: self.data.as_deref(),
@@ -53,10 +61,32 @@ impl Export {
             config: &run.config,
             task: &*run.task,
             checkpoint: &checkpoint,
+            excerpt,
         };
         write_whole(&self.out, &export(&trained, self.format)?)?;
         say!("{}", self.out.display());
         Ok(())
+    }
+
+    /// What of the motion is asked for.
+    fn excerpt(&self) -> Result<Excerpt, Usage> {
+        if (self.episode.is_some() || self.seconds.is_some()) && !self.format.motion {
+            let formats = FORMATS.iter().filter(|format| format.motion);
+            let names: Vec<&str> = formats.map(|format| format.name).collect();
+            let names = names.join(" and ");
+            return Err(Usage(format!("--episode and --seconds are for {names}")));
+        }
+        let excerpt = Excerpt {
+            episode: self.episode.unwrap_or(0),
+            seconds: self.seconds.unwrap_or(6.0),
+        };
+        if excerpt.episode >= 1000 {
+            return Err(Usage("--episode must be from 0 to 999".into()));
+        }
+        if !(excerpt.seconds > 0.0 && excerpt.seconds <= 600.0) {
+            return Err(Usage("--seconds must be over 0 and at most 600".into()));
+        }
+        Ok(excerpt)
     }
 
     /// Refuses an impossible file before anything is opened.

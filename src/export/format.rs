@@ -14,6 +14,25 @@ pub struct TrainedRun<'a> {
     pub task: &'a dyn Task,
     /// What it had learned by then.
     pub checkpoint: &'a Checkpoint,
+    /// What is played, in formats of motion.
+    pub excerpt: Excerpt,
+}
+
+/// Which of the evaluation's episodes, and how much of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Excerpt {
+    /// Number of the episode.
+    pub episode: usize,
+    /// Length from its start on, s. It is shorter if the episode ends before; who reaches the target of motion
+    /// matching goes on to another.
+    pub seconds: f32,
+}
+
+impl Excerpt {
+    /// Frames at so many a second, at least one.
+    pub fn frames(&self, rate: f32) -> usize {
+        ((self.seconds * rate).round() as usize).max(1)
+    }
 }
 
 /// A kind of file that runs are exported to.
@@ -26,6 +45,8 @@ pub struct ExportFormat {
     pub carries: fn(&TrainedRun) -> bool,
     /// The kinds of runs that it can carry, in words.
     pub carried: &'static str,
+    /// Whether it is a format of motion.
+    pub motion: bool,
     /// The bytes of the file.
     pub write: fn(&TrainedRun) -> Result<Vec<u8>>,
 }

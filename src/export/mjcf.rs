@@ -1,6 +1,7 @@
-//! Runs as MJCF files.
+//! Runs of simulated bodies as MJCF files.
 
 use super::format::{ExportFormat, TrainedRun};
+use crate::physics::mjcf::to_text;
 use anyhow::{Result, bail};
 
 /// The format in the list.
@@ -9,9 +10,14 @@ pub const FORMAT: ExportFormat = ExportFormat {
     about: "The simulated body as a model for MuJoCo",
     carries: |run| run.task.body().is_some(),
     carried: "runs of simulated bodies",
+    motion: false,
     write,
 };
 
-fn write(_run: &TrainedRun) -> Result<Vec<u8>> {
-    bail!("mjcf files cannot be written yet")
+/// What the task's environments simulate.
+fn write(run: &TrainedRun) -> Result<Vec<u8>> {
+    let Some(body) = run.task.body() else {
+        bail!("the task simulates nothing");
+    };
+    Ok(to_text(body.open(0).task().model())?.into_bytes())
 }

@@ -4,14 +4,16 @@
 //! one file.
 
 mod bvh;
+pub mod character;
+pub mod episode;
 mod format;
-mod gltf;
+pub mod gltf;
 mod mjcf;
 mod onnx;
 mod policy;
 mod safetensors;
 
-pub use format::{ExportFormat, TrainedRun};
+pub use format::{Excerpt, ExportFormat, TrainedRun};
 
 use crate::train::task::Unsupported;
 use anyhow::Result;

@@ -13,6 +13,7 @@ pub const FORMAT: ExportFormat = ExportFormat {
     about: "The policy's parameters by name, in PyTorch's shapes, with the same description",
     carries: |_| true,
     carried: "runs of every task",
+    motion: false,
     write,
 };
 

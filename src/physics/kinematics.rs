@@ -28,6 +28,14 @@ pub fn origin(model: &Model, tree: usize, q: &[f32]) -> Vec3 {
     }
 }
 
+/// Poses of the bodies at positions `q`, `[nq]`.
+pub fn poses(model: &Model, q: &[f32]) -> Vec<Pose> {
+    let mut poses = vec![Pose::default(); model.bodies.len()];
+    let mut axes = vec![Spatial::ZERO; model.nv()];
+    kinematics(model, q, &mut poses, &mut axes);
+    poses
+}
+
 /// World poses of all bodies, and the motion of every degree of freedom about its tree's origin.
 ///
 /// `q` is `[positions]`; `poses` `[bodies]`; `axes` `[dofs]`.

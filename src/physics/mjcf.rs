@@ -1,4 +1,4 @@
-//! Reads models from MJCF, MuJoCo's file format.
+//! Reads models from MJCF, MuJoCo's file format, and writes them.
 //!
 //! Bodies with free, ball and hinge joints, their springs and dampers; planes, spheres, capsules and boxes,
 //! and shapes that only weigh or are only seen; frames, included files, default classes; motors, drives to a
@@ -22,7 +22,9 @@ mod options;
 mod settings;
 mod shape;
 mod source;
+mod tag;
 mod worldbody;
+mod write;
 
 use super::model::Model;
 use class::Classes;
@@ -36,6 +38,7 @@ pub use source::MAX_BYTES;
 use source::{MjcfSource, read_text, refuse_large, xml};
 use std::path::Path;
 use worldbody::WorldBuilder;
+pub use write::{UnwritableModel, to_text};
 
 /// A model, and what the user should know of how it was read.
 #[derive(Clone, Debug)]

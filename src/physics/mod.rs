@@ -8,6 +8,7 @@
 //! - [`integrate`], [`simulator`]: a step of one world, from beginning to end;
 //! - [`motion_clip`], [`footing`], [`mirror`]: a recording of the body, on the ground and mirrored;
 //! - [`retarget`], [`deepmimic`]: where such recordings come from;
+//! - [`skeleton_clip`]: what becomes of them elsewhere;
 //! - [`motion_library`], [`motion_list`]: what to draw from, and the files that make it up.
 
 pub mod assemble;
@@ -33,4 +34,5 @@ pub mod pose;
 pub mod retarget;
 pub mod scenes;
 pub mod simulator;
+pub mod skeleton_clip;
 pub mod spatial;

@@ -287,6 +287,11 @@ impl Model {
         geom.body.map_or(0.0, |body| self.bodies[body].invweight0)
     }
 
+    /// Whether a body hangs on no other, and none on it.
+    pub fn is_alone(&self, body: usize) -> bool {
+        self.trees[self.bodies[body].tree].bodies.len() == 1
+    }
+
     /// Index of a body by name.
     pub fn body(&self, name: &str) -> Option<usize> {
         self.bodies.iter().position(|body| body.name == name)

@@ -3,6 +3,9 @@
 use glam::{Quat, Vec3};
 use std::ops::Mul;
 
+/// Rotation from the bodies' axes, z up, x forward, to those of recordings and pictures: y up, z forward.
+pub const Y_UP: Quat = Quat::from_xyzw(-0.5, -0.5, -0.5, 0.5);
+
 /// Position and rotation of a frame as seen from another.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {

@@ -15,21 +15,19 @@ mod sole;
 use super::footing::Footing;
 use super::model::Model;
 use super::motion_clip::MotionClip;
+use super::pose::Y_UP;
 use crate::motion::clip::Clip;
 use crate::motion::resample::resample;
 use crate::motion::roles::Roles;
 use crate::motion::units;
 use anatomy::Anatomy;
 pub use error::{Result, RetargetError};
-use glam::{Quat, Vec3};
+use glam::Vec3;
 pub(super) use humanoid_joints::joint;
 use humanoid_joints::{HumanoidJoints, TargetPose};
 use limb::Hinge;
 use recorded_frame::RecordedFrame;
 use sole::Sole;
-
-/// Turns the recordings' axes, y up, z forward, to the bodies': z up, x forward.
-const UPRIGHT: Quat = Quat::from_xyzw(0.5, 0.5, 0.5, 0.5);
 
 /// The clip's motion in a humanoid: it begins above the origin and stands on the ground, lengths are
 /// scaled as the legs' are. Joints stay within their ranges.
@@ -71,11 +69,12 @@ pub(super) fn footing(model: &Model) -> Result<Footing<'_>> {
 
 fn frame(clip: &Clip, index: usize) -> RecordedFrame {
     let (at, rotation) = clip.world(index);
+    let z_up = Y_UP.inverse();
     RecordedFrame {
-        at: at.into_iter().map(|at| UPRIGHT * at).collect(),
+        at: at.into_iter().map(|at| z_up * at).collect(),
         rotation: rotation
             .into_iter()
-            .map(|rotation| UPRIGHT * rotation)
+            .map(|rotation| z_up * rotation)
             .collect(),
     }
 }

@@ -6,10 +6,13 @@
 //! motion stitching" and "analytic two-joint inverse kinematics to prevent foot sliding".) Nothing
 //! here is ever seen by the policy.
 
+pub mod capsule_rig;
+pub mod colours;
 pub mod contact;
 pub mod foot_lock;
 pub mod inertialize;
 pub mod leg;
+pub mod meshes;
 pub mod placed_frame;
 pub mod player;
 pub mod pose;

@@ -25,6 +25,7 @@ pub mod metrics;
 pub mod metrics_writer;
 pub mod observer;
 pub mod planner;
+pub mod playthrough;
 pub mod rendered_frames;
 pub mod run_dir;
 pub mod state;

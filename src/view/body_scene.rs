@@ -3,9 +3,10 @@
 use super::body_playthrough::{BodyContext, BodyPlaythrough, BodyPush, TouchForce};
 use super::bout_scene::{flashes, ring};
 use super::camera::Camera;
-use super::scene::{Colour, Scene};
+use super::scene::Scene;
 use super::shapes::{self, Look, seen};
 use crate::physics::kinematics::{quaternion, store};
+use crate::playback::colours::Colour;
 use glam::{Quat, Vec3};
 
 /// Length of an arrow, m a newton: half the weight of the body is half a metre.

@@ -1,8 +1,9 @@
 //! What a bout has besides its fighters: the ring, and flashes where hands strike.
 
-use super::scene::{Colour, Cuboid, Scene};
+use super::scene::{Cuboid, Scene};
 use super::shapes::seen;
 use crate::env::humanoid::boxing::bout::{REMEMBERED, Strike};
+use crate::playback::colours::Colour;
 use glam::Vec3;
 
 const BORDER: Colour = [0.80, 0.82, 0.86];

@@ -1,6 +1,5 @@
 //! All environments of a training by motion matching at once, drawn from where the training keeps them.
 
-use super::capsule_rig::CapsuleRig;
 use super::crowd_shape::{CrowdParams, CrowdShape};
 use super::painter::{Drawable, Pass};
 use super::renderer::Renderer;
@@ -10,6 +9,7 @@ use crate::gpu::Shared;
 use crate::gpu::shader::{DRAW_CROWD, DRAW_CROWD_CUBOIDS};
 use crate::motion::database::Database;
 use crate::playback::PlacedFrame;
+use crate::playback::capsule_rig::CapsuleRig;
 use glam::Vec3;
 use rayon::prelude::*;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};

@@ -1,8 +1,8 @@
 //! One mesh, drawn for every environment of a training from where that keeps them.
 
-use super::meshes::{cube, sphere};
 use super::painter::{Mesh, Pass, Pipelines, vertex_buffer};
 use super::renderer::Renderer;
+use crate::playback::meshes::{cube, sphere};
 use bytemuck::{Pod, Zeroable};
 
 /// `Crowd` of `shaders/shared/crowd.wgsl`.

@@ -1,10 +1,11 @@
 //! Scenes of a playthrough: the character, its target, obstacles and trajectories.
 
-use super::playthrough::{Playthrough, PlaythroughContext};
-use super::scene::{Colour, Cuboid, Scene};
+use super::scene::{Cuboid, Scene};
 use crate::env::locomotion::LocomotionTask;
 use crate::kernels::termination;
 use crate::playback::PlacedFrame;
+use crate::playback::colours::Colour;
+use crate::train::playthrough::{Playthrough, PlaythroughContext};
 use glam::Vec3;
 
 const TARGET: Colour = [0.06, 0.50, 0.22];
@@ -33,9 +34,7 @@ pub fn scene(playthrough: &Playthrough, context: &PlaythroughContext) -> Scene {
 pub fn untargeted(playthrough: &Playthrough, context: &PlaythroughContext) -> Scene {
     let mut scene = Scene::default();
     let database = context.database();
-    context
-        .rig
-        .draw(&mut scene, &database.skeleton, &playthrough.pose);
+    scene.character(&context.rig, &database.skeleton, &playthrough.pose);
     if let Some(step) = &playthrough.step {
         let from = step.from;
         trajectory(&mut scene, from.at, &step.requested, REQUESTED);

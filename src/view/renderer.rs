@@ -1,12 +1,12 @@
 //! Draws a scene: once as the sun sees it, for the shadows, and once as the camera does.
 
 use super::camera::Camera;
-use super::meshes::{cube, sphere};
 use super::painter::{Drawable, Layouts, Mesh, Painter, Pass, Pipelines, vertex_buffer};
 use super::render_target::{DEPTH, RenderTarget};
 use super::scene::{Capsule, Cuboid, Scene};
 use crate::gpu::Gpu;
 use crate::gpu::shader::{DRAW_CAPSULE, DRAW_CUBOID, DRAW_GROUND};
+use crate::playback::meshes::{cube, sphere};
 use bytemuck::{Pod, Zeroable};
 use glam::camera::rh::proj::directx::orthographic;
 use glam::camera::rh::view::look_at_mat4;

@@ -1,10 +1,11 @@
 //! What there is to draw, in world coordinates: metres, y up.
 
+use crate::motion::skeleton::Skeleton;
+use crate::playback::CharacterPose;
+use crate::playback::capsule_rig::CapsuleRig;
+use crate::playback::colours::Colour;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-
-/// Linear red, green and blue.
-pub type Colour = [f32; 3];
 
 /// Two balls and the hull between them.
 #[repr(C)]
@@ -60,6 +61,16 @@ impl Scene {
             radius_b,
             colour,
         });
+    }
+
+    /// Adds a character.
+    pub fn character(&mut self, rig: &CapsuleRig, skeleton: &Skeleton, pose: &CharacterPose) {
+        let (positions, rotations) = pose.world(skeleton);
+        for bone in &rig.bones {
+            let [a, b] = bone.ends.map(|spot| spot.position(&positions, &rotations));
+            let [from, to] = bone.ends.map(|spot| spot.radius);
+            self.capsule(a, from, b, to, bone.colour);
+        }
     }
 
     /// Adds a ball.

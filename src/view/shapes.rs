@@ -1,48 +1,24 @@
 //! A simulated model as it is: its spheres, capsules and boxes.
 
-use super::capsule_rig::{LEFT, RIGHT, TRUNK};
-use super::scene::{Colour, Cuboid, Scene};
+use super::scene::{Cuboid, Scene};
 use crate::env::humanoid::task::{agent_bodies, agents};
-use crate::physics::kinematics::kinematics;
+pub use crate::physics::kinematics::poses;
 use crate::physics::model::{Geom, GeomShape, Model};
-use crate::physics::pose::Pose;
-use crate::physics::spatial::Spatial;
-use glam::{Quat, Vec3};
+use crate::physics::pose::{Pose, Y_UP};
+use crate::playback::colours::{Colour, body_colour};
+use glam::Vec3;
 
-/// Trunk, left limbs and right limbs of a bout's fighters: red, then blue.
-const CORNERS: [(&str, [Colour; 3]); 2] = [
-    (
-        "red/",
-        [[0.62, 0.06, 0.05], [0.86, 0.30, 0.22], [0.42, 0.03, 0.04]],
-    ),
-    (
-        "blue/",
-        [[0.05, 0.13, 0.62], [0.20, 0.42, 0.90], [0.03, 0.06, 0.36]],
-    ),
-];
-const THING: Colour = [0.42, 0.34, 0.30];
 /// A ghost's colours are mixed with this one, by this fraction.
 const GHOST: (Colour, f32) = ([0.80, 0.84, 0.88], 0.75);
 
-/// Turns the bodies' axes, z up, x forward, to the scene's: y up, z forward.
-const UPRIGHT: Quat = Quat::from_xyzw(-0.5, -0.5, -0.5, 0.5);
-
 /// A point or a direction of the bodies' world in the scene's.
 pub fn seen(at: Vec3) -> Vec3 {
-    UPRIGHT * at
+    Y_UP * at
 }
 
 /// A point or a direction of the scene in the bodies' world: the opposite of [`seen`].
 pub fn simulated(at: Vec3) -> Vec3 {
-    UPRIGHT.inverse() * at
-}
-
-/// Poses of the bodies at positions `q`.
-pub fn poses(model: &Model, q: &[f32]) -> Vec<Pose> {
-    let mut poses = vec![Pose::default(); model.bodies.len()];
-    let mut axes = vec![Spatial::ZERO; model.nv()];
-    kinematics(model, q, &mut poses, &mut axes);
-    poses
+    Y_UP.inverse() * at
 }
 
 /// The point between the characters of a world, in the scene, and how far they are from it at most, m.
@@ -72,26 +48,17 @@ pub fn draw(scene: &mut Scene, model: &Model, poses: &[Pose], aside: Vec3, look:
         let pose = geom.pose(poses);
         let pose = Pose {
             position: seen(pose.position) + aside,
-            rotation: UPRIGHT * pose.rotation,
+            rotation: Y_UP * pose.rotation,
         };
         shape(scene, geom.shape, &pose, colour(model, geom, look));
     }
 }
 
-/// The colour of a shape: left limbs are blue, right ones orange, and what has no limbs is brown. Fighters have those
-/// of their corners, paler at the left.
+/// The colour of a shape, which is its body's.
 pub(super) fn colour(model: &Model, geom: &Geom, look: Look) -> Colour {
-    let body = geom.body.map(|body| &model.bodies[body]);
-    let name = body.map_or("", |body| &body.name);
-    let alone = body.is_some_and(|body| model.trees[body.tree].bodies.len() == 1);
-    let corner = CORNERS.iter().find(|(corner, _)| name.starts_with(corner));
-    let [trunk, left, right] = corner.map_or([TRUNK, LEFT, RIGHT], |(_, colours)| *colours);
-    let own = match name {
-        _ if name.contains("left") => left,
-        _ if name.contains("right") => right,
-        _ if alone => THING,
-        _ => trunk,
-    };
+    let name = geom.body.map_or("", |body| &model.bodies[body].name);
+    let alone = geom.body.is_some_and(|body| model.is_alone(body));
+    let own = body_colour(name, alone);
     let (pale, fraction) = GHOST;
     match look {
         Look::Solid => own,

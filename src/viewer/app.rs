@@ -15,9 +15,9 @@ use crate::motion::RATE;
 use crate::motion::features::{FRAMES_PER_STEP, ROW_STRIDE};
 use crate::playback::PlacedFrame;
 use crate::train::controller::Controller;
+use crate::train::playthrough::{Playthrough, PlaythroughContext};
 use crate::view::camera::FOLLOW;
 use crate::view::debug_draw::{self, MATCHED, trajectory};
-use crate::view::playthrough::{Playthrough, PlaythroughContext};
 use crate::view::{Camera, Scene};
 use anyhow::Result;
 use eframe::egui::{self, Key, Ui};
@@ -391,9 +391,8 @@ impl Viewer {
             Source::Clip(clip) => {
                 let (mut scene, shown) = (Scene::default(), self.clip_shown(clip));
                 let skeleton = &context.database().skeleton;
-                context
-                    .rig
-                    .draw(&mut scene, skeleton, &shown.pose(context.database()));
+                let pose = shown.pose(context.database());
+                scene.character(&context.rig, skeleton, &pose);
                 let path = shown.path(context.database());
                 trajectory(&mut scene, shown.at, &path, MATCHED);
                 scene

@@ -8,7 +8,7 @@ use footwork::env::humanoid::task::play::play_by;
 use footwork::env::humanoid::task::spec;
 use footwork::env::locomotion::{CpuLocomotion, EnvConfig};
 use footwork::env::{EnvSpec, VecEnv};
-use footwork::export::{FORMATS, TrainedRun, export};
+use footwork::export::{Excerpt, FORMATS, TrainedRun, export};
 use footwork::gpu::{Array, Device};
 use footwork::kernels::humanoid::action_targets::set_targets;
 use footwork::kernels::rng::{gaussian, random4};
@@ -51,15 +51,23 @@ pub struct Recorded {
 }
 
 impl UntrainedRun {
-    /// The bytes of the run in a format.
-    pub fn exported(&self, format: &str) -> Vec<u8> {
-        let run = TrainedRun {
+    /// The run as it is exported.
+    pub fn trained(&self) -> TrainedRun<'_> {
+        TrainedRun {
             config: &self.config,
             task: &*self.task,
             checkpoint: &self.checkpoint,
-        };
+            excerpt: Excerpt {
+                episode: 3,
+                seconds: 2.0,
+            },
+        }
+    }
+
+    /// The bytes of the run in a format.
+    pub fn exported(&self, format: &str) -> Vec<u8> {
         let format = FORMATS.iter().find(|found| found.name == format);
-        export(&run, format.expect("such a format")).expect("an exported run")
+        export(&self.trained(), format.expect("such a format")).expect("an exported run")
     }
 
     /// Writes the run in a format, and beside it what our own pass does.

@@ -6,7 +6,7 @@ use footwork::env::{EnvBatch, Transition};
 use footwork::gpu::{Array, Device};
 use footwork::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
 use footwork::playback::PlacedFrame;
-use footwork::view::capsule_rig::CapsuleRig;
+use footwork::playback::capsule_rig::CapsuleRig;
 use footwork::view::scene::Cuboid;
 use footwork::view::{Camera, Crowd, Renderer, Scene};
 use glam::Vec3;
@@ -71,7 +71,7 @@ fn one_of_a_crowd(device: Device) {
     };
     let mut scene = Scene::default();
     let body = CapsuleRig::of(&DATABASE.skeleton, &DATABASE.roles);
-    body.draw(&mut scene, &DATABASE.skeleton, &shown.pose(&DATABASE));
+    scene.character(&body, &DATABASE.skeleton, &shown.pose(&DATABASE));
     let target = Vec3::new(
         state.state_f32[state_f32::TARGET_X],
         0.0,

@@ -16,8 +16,8 @@ use footwork::motion::normalise::Weights;
 use footwork::motion::synthetic;
 use footwork::playback::player::Style;
 use footwork::train::controller::{Controller, Scripted};
+use footwork::train::playthrough::PlaythroughContext;
 use footwork::view::painter::Drawable;
-use footwork::view::playthrough::PlaythroughContext;
 use footwork::view::{Camera, RenderTarget, Renderer, Scene};
 use std::sync::{Arc, LazyLock};
 

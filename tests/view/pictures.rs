@@ -1,9 +1,9 @@
 use crate::{DATABASE, Picture, Walker, context};
 use footwork::env::locomotion::{LocomotionTask, Obstacles, Plane};
 use footwork::playback::PlacedFrame;
-use footwork::view::capsule_rig::CapsuleRig;
+use footwork::playback::capsule_rig::CapsuleRig;
+use footwork::train::playthrough::Playthrough;
 use footwork::view::debug_draw::scene;
-use footwork::view::playthrough::Playthrough;
 use footwork::view::{Camera, Scene};
 
 const SIZE: [u32; 2] = [240, 160];
@@ -25,7 +25,7 @@ fn body(frame: usize) -> Scene {
     };
     let mut scene = Scene::default();
     let body = CapsuleRig::of(&DATABASE.skeleton, &DATABASE.roles);
-    body.draw(&mut scene, &DATABASE.skeleton, &shown.pose(&DATABASE));
+    scene.character(&body, &DATABASE.skeleton, &shown.pose(&DATABASE));
     scene
 }
 

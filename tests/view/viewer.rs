@@ -9,7 +9,7 @@ use footwork::env::locomotion::{LocomotionTask, Obstacles, Plane};
 use footwork::kernels::termination;
 use footwork::motion::features::FRAMES_PER_STEP;
 use footwork::train::controller::Controller;
-use footwork::view::playthrough::Playthrough;
+use footwork::train::playthrough::Playthrough;
 use footwork::viewer::Viewer;
 use footwork::viewer::policies::PolicyEntry;
 use footwork::viewer::window::shared;

@@ -19,6 +19,7 @@ pub const FORMAT: ExportFormat = ExportFormat {
     about: "The policy as a network for ONNX Runtime and engines, with all that is needed to run it",
     carries: |_| true,
     carried: "runs of every task",
+    motion: false,
     write,
 };
 

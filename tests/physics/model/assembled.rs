@@ -4,7 +4,9 @@ use super::parse;
 use footwork::physics::assemble::{Part, assemble};
 use footwork::physics::collision::PairKind;
 use footwork::physics::humanoid::{humanoid, punching_box};
+use footwork::physics::mjcf;
 use footwork::physics::model::{GeomShape, JointKind, Model};
+use footwork::physics::scenes::{boxing_match, humanoid_and_box};
 use glam::{Quat, Vec3};
 use std::collections::HashSet;
 use std::f32::consts::FRAC_PI_2;
@@ -44,6 +46,57 @@ fn a_humanoid_and_a_box() {
     assert_eq!(planes.count(), 1);
     assert_eq!(world.pairs.len(), body.pairs.len() + 1 + 18);
     coherent(&world);
+}
+
+/// Names with prefixes, one ground, excluded and crossed pairs, where each part stands.
+#[test]
+fn worlds_are_written_and_read_again() {
+    let scenes = [boxing_match(), humanoid_and_box()];
+    for world in scenes {
+        let text = mjcf::to_text(&world).unwrap();
+        let again = parse(&text).unwrap();
+        assert_eq!(again.name, world.name);
+        let pairs = |model: &Model| HashSet::<[usize; 2]>::from_iter(model.pairs.iter().copied());
+        assert_eq!(pairs(&again), pairs(&world));
+        assert_eq!(again.trees, world.trees);
+        for (again, body) in again.bodies.iter().zip(&world.bodies) {
+            assert_eq!((&again.name, again.mass), (&body.name, body.mass));
+            assert_eq!((again.position, again.com), (body.position, body.com));
+            assert_eq!(again.inertia, body.inertia);
+        }
+        for (again, joint) in again.joints.iter().zip(&world.joints) {
+            assert_eq!(again, joint);
+        }
+        for (again, dof) in again.dofs.iter().zip(&world.dofs) {
+            assert_eq!((again.drive, again.armature), (dof.drive, dof.armature));
+        }
+        let away = |(a, b): (&f32, &f32)| (a - b).abs();
+        let start = again.qpos0.iter().zip(&world.qpos0).map(away);
+        assert!(start.fold(0.0, f32::max) < 1e-6);
+    }
+}
+
+#[test]
+fn shapes_of_which_some_touch_and_some_do_not_are_not_written() {
+    let mut world = humanoid_and_box();
+    let shape = |name: &str| {
+        let mut geoms = world.geoms.iter();
+        geoms.position(|geom| geom.name == name).unwrap()
+    };
+    let [head, chest, block] = ["head", "torso", "box"].map(shape);
+    world
+        .pairs
+        .retain(|pair| !(pair.contains(&head) && pair.contains(&block)));
+    assert!(
+        mjcf::to_text(&world)
+            .unwrap()
+            .contains("<exclude body1=\"head\" body2=\"box\"/>")
+    );
+    world
+        .pairs
+        .retain(|pair| !(pair.contains(&chest) && pair.contains(&block)));
+    let error = mjcf::to_text(&world).unwrap_err().to_string();
+    assert!(error.contains("torso") && error.contains("box"), "{error}");
 }
 
 #[test]

@@ -62,6 +62,17 @@ fn models_like_public_ones_are_what_mujoco_makes_of_them() {
     }
 }
 
+#[test]
+fn models_that_are_written_are_still_what_mujoco_makes_of_them() {
+    let golden = golden();
+    let models = PUBLIC.map(|name| (name, public(name)));
+    for (name, model) in models.into_iter().chain([("humanoid", humanoid())]) {
+        let text = mjcf::to_text(&model).unwrap();
+        let again = parse(&text).unwrap_or_else(|error| panic!("{name}: {error}\n{text}"));
+        compare(name, &again, &golden[name]["facts"]);
+    }
+}
+
 /// Springs, dampers, motors and general actuators, gears, limits of controls and torques.
 #[test]
 fn models_like_public_ones_move_as_in_mujoco() {

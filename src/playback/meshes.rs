@@ -31,7 +31,8 @@ pub fn cube() -> Vec<[[f32; 3]; 2]> {
             for (u, v) in [(-1, -1), (1, -1), (-1, 1), (-1, 1), (1, -1), (1, 1)] {
                 let (mut at, mut normal) = ([0.0; 3], [0.0; 3]);
                 (at[axis], normal[axis]) = (sign, sign);
-                (at[(axis + 1) % 3], at[(axis + 2) % 3]) = (u as f32, v as f32);
+                // Counterclockwise, seen from outside.
+                (at[(axis + 1) % 3], at[(axis + 2) % 3]) = (u as f32, sign * v as f32);
                 corners.push([at, normal]);
             }
         }

@@ -1,6 +1,8 @@
 //! One character under a controller, frame by frame, for somebody to watch.
 
-use super::capsule_rig::CapsuleRig;
+use super::controller::Controller;
+use super::evaluate::{advance, episodes, send_elsewhere};
+use super::rendered_frames::standing;
 use crate::env::locomotion::cpu::CpuLocomotion;
 use crate::env::locomotion::{LEVELS, LocomotionTask};
 use crate::env::termination;
@@ -9,11 +11,9 @@ use crate::matching::MotionMatcher;
 use crate::motion::character_frame::to_world;
 use crate::motion::database::Database;
 use crate::motion::features::{FRAMES_PER_STEP, POSE_DIM, TRAJECTORY_DIM, TRAJECTORY_OFFSETS};
+use crate::playback::capsule_rig::CapsuleRig;
 use crate::playback::player::{Feet, Player, Style};
 use crate::playback::{CharacterPose, PlacedFrame};
-use crate::train::controller::Controller;
-use crate::train::evaluate::{advance, episodes, send_elsewhere};
-use crate::train::rendered_frames::standing;
 use anyhow::Result;
 use std::sync::Arc;
 

@@ -1,34 +1,32 @@
 //! A skeleton drawn as capsules between its joints, thick where a person is.
 
-use super::scene::{Colour, Scene};
+use super::colours::{Colour, LEFT, RIGHT, TRUNK};
 use crate::motion::roles::Roles;
 use crate::motion::skeleton::Skeleton;
-use crate::playback::CharacterPose;
 use bytemuck::{Pod, Zeroable};
 use glam::{Quat, Vec3};
 
-/// Left limbs are blue and right ones orange: a mirrored or crossed leg shows at once.
-pub(super) const LEFT: Colour = [0.10, 0.30, 0.68];
-pub(super) const RIGHT: Colour = [0.85, 0.30, 0.06];
-pub(super) const TRUNK: Colour = [0.62, 0.64, 0.68];
 /// From the top of the thigh to the ankle of the person whose radii are given here, m.
 const LEG: f32 = 0.83;
 
-/// A point that moves with a joint.
+/// A ball that moves with a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Spot {
-    joint: usize,
-    /// In the joint's frame, m.
-    offset: Vec3,
+pub struct Spot {
+    /// Number of the joint.
+    pub joint: usize,
+    /// Its centre in the joint's frame, m.
+    pub offset: Vec3,
     /// m
-    radius: f32,
+    pub radius: f32,
 }
 
-/// A capsule between two such points.
+/// Two such balls and the hull between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bone {
-    ends: [Spot; 2],
-    colour: Colour,
+    /// The balls.
+    pub ends: [Spot; 2],
+    /// Colour of the surface.
+    pub colour: Colour,
 }
 
 /// A bone in a shader's table.
@@ -106,20 +104,11 @@ impl CapsuleRig {
         };
         self.bones.iter().map(row).collect()
     }
-
-    /// Adds a character to a scene.
-    pub fn draw(&self, scene: &mut Scene, skeleton: &Skeleton, pose: &CharacterPose) {
-        let (positions, rotations) = pose.world(skeleton);
-        for bone in &self.bones {
-            let [a, b] = bone.ends.map(|spot| spot.position(&positions, &rotations));
-            let [from, to] = bone.ends.map(|spot| spot.radius);
-            scene.capsule(a, from, b, to, bone.colour);
-        }
-    }
 }
 
 impl Spot {
-    fn position(&self, positions: &[Vec3], rotations: &[Quat]) -> Vec3 {
+    /// Its centre in the world, m, where the joints have these positions and rotations.
+    pub fn position(&self, positions: &[Vec3], rotations: &[Quat]) -> Vec3 {
         positions[self.joint] + rotations[self.joint] * self.offset
     }
 }
