@@ -47,10 +47,13 @@ pub struct TaskEntry {
     /// Loads the data.
     pub load: fn(&Config) -> Result<Loaded>,
     /// The task with recordings that are loaded already, of tasks that take a motion list and steer nothing.
-    pub with_recordings: Option<fn(&Config, MotionLibrary) -> Result<Box<dyn Task>>>,
+    pub with_recordings: Option<WithRecordings>,
     /// Comparisons of variants that `footwork ablate` knows.
     pub ablations: &'static [Ablation],
 }
+
+/// Makes a task of recordings.
+pub type WithRecordings = fn(&Config, MotionLibrary) -> Result<Box<dyn Task>>;
 
 /// A task whose policy may steer a low level.
 pub struct Steering {
