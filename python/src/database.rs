@@ -230,8 +230,8 @@ impl Database {
         let queries = self.queries(&frames, &trajectories);
         let mut nearest = vec![0; frames.len()];
         py.detach(|| {
-            let index = &self.matcher().index;
-            pool::install(|| index.nearest_all(&frames, &queries, &mut nearest));
+            let matcher = self.matcher();
+            pool::install(|| matcher.nearest_all(&frames, &queries, &mut nearest));
         });
         Ok(self.found(py, &nearest, &queries))
     }
