@@ -124,7 +124,7 @@ impl Pair {
         let frame = before.state_u32[state_u32::FRAME * ENVS + env];
         let mut query = DATABASE.features[frame as usize];
         query[POSE_DIM..][..TRAJECTORY_DIM].copy_from_slice(&action[..TRAJECTORY_DIM]);
-        let matched = MATCHER.index.nearest(frame, &query).index as usize;
+        let matched = MATCHER.nearest(frame, &query).index as usize;
         let frame = DATABASE.candidates[matched] as usize;
         let path = |frame: usize| DATABASE.path[frame].map(f64::from);
         let [x, z, hx, hz] = path(frame);

@@ -5,6 +5,7 @@ use super::player::{Player, devices};
 use super::{config, tasks};
 use crate::support::inputs::Draw;
 use footwork::env::EnvBatch;
+use footwork::gpu::Array;
 use footwork::kernels::locomotion::locomotion_layout::{state_f32, state_u32};
 
 const ENVS: usize = 70;
@@ -85,18 +86,16 @@ fn rows_add_up_to_the_statistics() {
         }
         let names = player.envs.stat_names();
         let parts = player.envs.parts.iter();
-        let rows: Vec<f32> = parts
-            .flat_map(|part| part.row_stats().expect("sums"))
-            .collect();
+        let rows: Vec<Array> = parts.map(|part| part.row_stats().expect("sums")).collect();
         let stats = player.stats();
         assert!(stats.sum("episodes") > 0.0);
         for (at, (name, sum)) in stats.iter().enumerate() {
-            let rows: f64 = rows
-                .iter()
-                .skip(at)
-                .step_by(names.len())
-                .map(|&own| f64::from(own))
-                .sum();
+            let of_part = |part: &Array| {
+                let rows = part.len() / names.len();
+                let own = &part.host()[at * rows..][..rows];
+                own.iter().map(|&own| f64::from(own)).sum::<f64>()
+            };
+            let rows: f64 = rows.iter().map(of_part).sum();
             assert!(
                 (rows - sum).abs() <= 1e-4 * sum.abs(),
                 "{name}: {rows} {sum}"
