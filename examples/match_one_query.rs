@@ -24,7 +24,8 @@ fn main() -> anyhow::Result<()> {
         None => synthetic::perform(1, 4.0),
     };
     let database = Database::build(&clips, roles, Weights::PAPER)?;
-    let MotionMatcher { database, index } = MotionMatcher::new(Arc::new(database));
+    let matcher = MotionMatcher::new(Arc::new(database));
+    let database = &matcher.database;
 
     // A frame of somebody who walks ahead, at 1 m/s or faster.
     let at = |frame: usize| PlacedFrame {
@@ -33,9 +34,7 @@ fn main() -> anyhow::Result<()> {
         heading: [0.0, 1.0],
     };
     let speed = |frame: u32| {
-        let [_, z] = at(frame as usize)
-            .on(&database, FRAMES_PER_STEP as isize)
-            .at;
+        let [_, z] = at(frame as usize).on(database, FRAMES_PER_STEP as isize).at;
         z * RATE / FRAMES_PER_STEP as f32
     };
     let mut frames = database.candidates.iter().copied();
@@ -64,7 +63,7 @@ fn main() -> anyhow::Result<()> {
     );
     // From where the character is, facing +z, it goes on as in these frames.
     for ahead in 1..=FRAMES_PER_STEP {
-        let [x, z] = at(first).on(&database, ahead as isize).at;
+        let [x, z] = at(first).on(database, ahead as isize).at;
         println!("after {ahead} frames: {x:.2}, {z:.2} m");
     }
     Ok(())
