@@ -12,7 +12,7 @@ use rand::{RngExt, SeedableRng};
 use std::sync::Arc;
 
 const ENVS: usize = 256;
-/// Of a fifth of a second each.
+/// Steps to play, a fifth of a second each.
 const STEPS: usize = 200;
 
 fn main() -> anyhow::Result<()> {

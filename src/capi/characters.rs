@@ -5,7 +5,7 @@ use super::database::{FootworkDatabase, motion};
 use super::handles::Handles;
 use super::policy::{FootworkPolicy, policy};
 use super::status::{Failure, FootworkStatus, failure, guard};
-use crate::runtime::{Characters, Obstacle};
+use crate::runtime::{Characters, MovingObstacle};
 use std::cell::RefCell;
 use std::sync::{Mutex, PoisonError};
 
@@ -171,7 +171,7 @@ pub unsafe extern "C" fn footwork_characters_set_obstacles(
                     velocity,
                 } = obstacle;
                 finite([centre, half, velocity].as_flattened(), "obstacles")?;
-                all.push(Obstacle {
+                all.push(MovingObstacle {
                     centre,
                     half,
                     velocity,
@@ -184,7 +184,7 @@ pub unsafe extern "C" fn footwork_characters_set_obstacles(
 }
 
 thread_local! {
-    static OBSTACLES: RefCell<Vec<Obstacle>> = const { RefCell::new(Vec::new()) };
+    static OBSTACLES: RefCell<Vec<MovingObstacle>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Moves a character on by a frame, a thirtieth of a second. Every sixth frame its policy decides. It must have a target.

@@ -1,7 +1,7 @@
 //! `footwork export`.
 
 use super::Usage;
-use super::run::{Moved, Run};
+use super::run::{MovedFiles, Run};
 use super::say::say;
 use anyhow::{Result, bail};
 use clap::Args;
@@ -23,12 +23,8 @@ pub struct Export {
     /// Write over what is there
     #[arg(long)]
     force: bool,
-    /// Where the run's motion is now, if it has been moved
-    #[arg(long, value_name = "DIR|FILE")]
-    data: Option<PathBuf>,
-    /// Where the low level is now that the run steers, if it has been moved
-    #[arg(long, value_name = "RUN")]
-    skills: Option<PathBuf>,
+    #[command(flatten)]
+    files: MovedFiles,
     /// Which of the evaluation's episodes, of motion [default: 0]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     episode: Option<usize>,
@@ -51,11 +47,7 @@ impl Export {
     pub fn run(self) -> Result<()> {
         let excerpt = self.excerpt()?;
         self.check_out()?;
-        let moved = Moved {
-            data: self.data.as_deref(),
-            skills: self.skills.as_deref(),
-        };
-        let run = Run::open(&self.run, moved)?;
+        let run = Run::open(&self.run, self.files.moved())?;
         let checkpoint = run.checkpoint(&run.path)?;
         let trained = TrainedRun {
             config: &run.config,

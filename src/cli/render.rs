@@ -2,7 +2,7 @@
 
 use super::Usage;
 use super::latents::{ChosenLatents, LatentOptions};
-use super::run::{Moved, Run};
+use super::run::{MovedFiles, Run};
 use super::say::say;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
@@ -35,12 +35,8 @@ pub struct Render {
     /// Write over what is there
     #[arg(long)]
     force: bool,
-    /// Where the run's motion is now, if it has been moved
-    #[arg(long, value_name = "DIR|FILE")]
-    data: Option<PathBuf>,
-    /// Where the low level is now that the run steers, if it has been moved
-    #[arg(long, value_name = "RUN")]
-    skills: Option<PathBuf>,
+    #[command(flatten)]
+    files: MovedFiles,
     /// Which of the evaluation's episodes
     #[arg(
         long,
@@ -137,11 +133,7 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 impl Render {
     pub fn run(self) -> Result<()> {
         let output = self.check()?;
-        let moved = Moved {
-            data: self.data.as_deref(),
-            skills: self.skills.as_deref(),
-        };
-        let run = Run::open(&self.run, moved)?;
+        let run = Run::open(&self.run, self.files.moved())?;
         let body = run.task.body();
         let task = &run.config.task.name;
         let times = [self.start, self.seconds].map(|time| (time * RATE as f32).round() as usize);

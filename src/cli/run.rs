@@ -2,6 +2,7 @@
 
 use super::Usage;
 use anyhow::{Context, Result};
+use clap::Args;
 use footwork::env::EnvSpec;
 use footwork::train::checkpoint::{Checkpoint, CheckpointError};
 use footwork::train::config::Config;
@@ -61,6 +62,26 @@ impl Run {
             ))
         };
         self.task.locomotion().ok_or_else(why)
+    }
+}
+
+/// Options for files that have been moved.
+#[derive(Args)]
+pub struct MovedFiles {
+    /// Where the run's motion is now, if it has been moved
+    #[arg(long, value_name = "DIR|FILE")]
+    data: Option<PathBuf>,
+    /// Where the low level is now that the run steers, if it has been moved
+    #[arg(long, value_name = "RUN")]
+    skills: Option<PathBuf>,
+}
+
+impl MovedFiles {
+    pub fn moved(&self) -> Moved<'_> {
+        Moved {
+            data: self.data.as_deref(),
+            skills: self.skills.as_deref(),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! `footwork tournament`.
 
 use super::Usage;
-use super::run::{Moved, Run};
+use super::run::{Moved, MovedFiles, Run};
 use super::say::{say, show, tell};
 #[cfg(feature = "report")]
 use super::usage::writable;
@@ -19,12 +19,8 @@ pub struct Tournament {
     /// Let all checkpoints of a run fight, but for the best, which is one of them; may be given several times
     #[arg(long, value_name = "RUN")]
     checkpoints: Vec<PathBuf>,
-    /// Where the runs' motion is now, if it has been moved
-    #[arg(long, value_name = "DIR|FILE")]
-    data: Option<PathBuf>,
-    /// Where their low level is now, if it has been moved
-    #[arg(long, value_name = "RUN")]
-    skills: Option<PathBuf>,
+    #[command(flatten)]
+    files: MovedFiles,
     /// Bouts between any two, half of them in either corner
     #[arg(
         long,
@@ -59,10 +55,7 @@ impl Tournament {
         if let Some(path) = &self.plot {
             drawable(path)?;
         }
-        let moved = Moved {
-            data: self.data.as_deref(),
-            skills: self.skills.as_deref(),
-        };
+        let moved = self.files.moved();
         for run in &self.players {
             field.enter(run, moved, false)?;
         }

@@ -54,7 +54,7 @@ impl VectorPart {
         }
     }
 
-    /// The same quantity times a factor.
+    /// This quantity times a factor.
     pub fn scaled(self, factor: f32) -> Self {
         VectorPart {
             scale: vec![factor; self.elements.len()],

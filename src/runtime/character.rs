@@ -16,7 +16,7 @@ use crate::playback::{CharacterPose, PlacedFrame};
 
 /// An obstacle on the ground: a box along the axes of the world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Obstacle {
+pub struct MovingObstacle {
     /// Its centre, `[x, z]`, m.
     pub centre: [f32; 2],
     /// Half its sides, m.
@@ -151,9 +151,9 @@ impl Character {
         self.has_target
     }
 
-    pub fn set_obstacles(&mut self, obstacles: &[Obstacle]) {
+    pub fn set_obstacles(&mut self, obstacles: &[MovingObstacle]) {
         self.params.task = with_obstacles(self.params.task, obstacles.len());
-        let all = |field: fn(&Obstacle) -> f32| obstacles.iter().map(field);
+        let all = |field: fn(&MovingObstacle) -> f32| obstacles.iter().map(field);
         self.boxes.clear();
         self.boxes.extend(all(|obstacle| obstacle.centre[0]));
         self.boxes.extend(all(|obstacle| obstacle.centre[1]));

@@ -1,6 +1,6 @@
 //! Any number of characters of one database under one policy.
 
-use super::character::{Character, CharacterState, DecisionScratch, Obstacle};
+use super::character::{Character, CharacterState, DecisionScratch, MovingObstacle};
 use super::character_motion::CharacterMotion;
 use super::character_policy::CharacterPolicy;
 use crate::motion::features::FRAMES_PER_STEP;
@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// for _frame in 0..90 {
 ///     characters.step(0);
 ///     let pose = characters.pose(0); // root position, a rotation a joint
-///     println!("{}", pose.root);
+///     assert!(pose.root.is_finite());
 /// }
 /// # Ok::<(), anyhow::Error>(())
 /// ```
@@ -106,7 +106,7 @@ impl Characters {
 
     /// Says where the obstacles are that a character sees in its next decisions. Without as many as never before
     /// nothing is allocated. A policy of the plane sees none.
-    pub fn set_obstacles(&mut self, character: usize, obstacles: &[Obstacle]) {
+    pub fn set_obstacles(&mut self, character: usize, obstacles: &[MovingObstacle]) {
         self.characters[character].set_obstacles(obstacles);
     }
 

@@ -9,7 +9,7 @@ mod character_motion;
 mod character_policy;
 mod characters;
 
-pub use character::{CharacterState, Obstacle};
+pub use character::{CharacterState, MovingObstacle};
 pub use character_motion::CharacterMotion;
 pub use character_policy::{CharacterPolicy, PolicyError};
 pub use characters::{Characters, CharactersError};

@@ -281,6 +281,19 @@ impl Playthrough {
             .map(|slot| std::array::from_fn(|field| value(field, slot)))
             .collect()
     }
+
+    /// The obstacle at a point, and the point relative to its centre.
+    pub fn obstacle_at(&self, at: [f32; 2]) -> Option<(usize, [f32; 2])> {
+        let obstacles = self.obstacles();
+        let mut on = obstacles
+            .iter()
+            .enumerate()
+            .filter(|(_, [x, z, half_x, half_z])| {
+                (at[0] - x).abs() <= *half_x && (at[1] - z).abs() <= *half_z
+            });
+        on.next()
+            .map(|(slot, [x, z, ..])| (slot, [at[0] - x, at[1] - z]))
+    }
 }
 
 fn obstacle_count(env: &CpuLocomotion) -> usize {

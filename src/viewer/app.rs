@@ -415,7 +415,9 @@ impl Viewer {
                 }
             }
             Some(PointerAction::Press(ray)) => {
-                self.grabbed = ray.ground().and_then(|at| self.obstacle(at));
+                self.grabbed = ray
+                    .ground()
+                    .and_then(|at| self.timeline.now().obstacle_at(at));
             }
             Some(PointerAction::Drag(ray)) => {
                 if let (Some((slot, [x, z])), Some(at)) = (self.grabbed, ray.ground()) {
@@ -427,19 +429,6 @@ impl Viewer {
             Some(PointerAction::Release) => self.grabbed = None,
             None => {}
         }
-    }
-
-    /// The obstacle at a point, and the point relative to its centre.
-    fn obstacle(&self, at: [f32; 2]) -> Option<(usize, [f32; 2])> {
-        let obstacles = self.timeline.now().obstacles();
-        let mut on = obstacles
-            .iter()
-            .enumerate()
-            .filter(|(_, [x, z, half_x, half_z])| {
-                (at[0] - x).abs() <= *half_x && (at[1] - z).abs() <= *half_z
-            });
-        on.next()
-            .map(|(slot, [x, z, ..])| (slot, [at[0] - x, at[1] - z]))
     }
 }
 

@@ -1,6 +1,6 @@
 //! A run of a simulated body in a page.
 
-use super::played_run::{PlayedRun, Progress, RunState};
+use super::played_run::{FrameProgress, PlayedRun, RunState};
 use super::run_file::Recordings;
 use crate::nn::Policy;
 use crate::physics::scenes;
@@ -84,12 +84,12 @@ impl PlayedRun for BodyRun {
         true
     }
 
-    fn advance(&mut self) -> Result<Progress> {
+    fn advance(&mut self) -> Result<FrameProgress> {
         let grip = self.grip.as_ref();
         let push = grip.and_then(|grip| grip.push(self.context.model(), &self.now.q, &self.camera));
         self.now = self.now.next(&mut self.context, &self.policy, push)?;
         self.frames_shown += 1;
-        Ok(Progress::Shown)
+        Ok(FrameProgress::Shown)
     }
 
     fn scene(&self, camera: &Camera) -> Scene {

@@ -1,7 +1,7 @@
 //! A run of motion matching in a page.
 
 use super::motion_parts::MotionHeader;
-use super::played_run::{PlayedRun, Progress, Query, RunState};
+use super::played_run::{FrameProgress, PlayedRun, Query, RunState};
 use crate::env::locomotion::LocomotionTask;
 use crate::matching::MotionMatcher;
 use crate::motion::database::Database;
@@ -73,19 +73,6 @@ impl LocomotionRun {
         self.arrivals += u32::from(playthrough.has_arrived());
         self.awaits_match = false;
     }
-
-    /// The obstacle at a point, and the point relative to its centre.
-    fn obstacle(&self, at: [f32; 2]) -> Option<(usize, [f32; 2])> {
-        let obstacles = self.playthrough.as_ref()?.obstacles();
-        let mut on = obstacles
-            .iter()
-            .enumerate()
-            .filter(|(_, [x, z, half_x, half_z])| {
-                (at[0] - x).abs() <= *half_x && (at[1] - z).abs() <= *half_z
-            });
-        on.next()
-            .map(|(slot, [x, z, ..])| (slot, [at[0] - x, at[1] - z]))
-    }
 }
 
 fn context(task: LocomotionTask, (database, feet): (Database, Feet)) -> PlaythroughContext {
@@ -127,17 +114,17 @@ impl PlayedRun for LocomotionRun {
         self.playthrough.is_some()
     }
 
-    fn advance(&mut self) -> Result<Progress> {
+    fn advance(&mut self) -> Result<FrameProgress> {
         self.prepare()?;
         if self.awaits_match {
-            return Ok(Progress::AwaitsMatch);
+            return Ok(FrameProgress::AwaitsMatch);
         }
         if let Some(playthrough) = &mut self.playthrough {
             playthrough.show_next(&self.context);
             self.frames_shown += 1;
         }
         self.prepare()?;
-        Ok(Progress::Shown)
+        Ok(FrameProgress::Shown)
     }
 
     fn query(&self) -> Option<Query<'_>> {
@@ -195,7 +182,9 @@ impl PlayedRun for LocomotionRun {
     }
 
     fn press(&mut self, ray: &Ray) -> bool {
-        self.grabbed = ray.ground().and_then(|at| self.obstacle(at));
+        self.grabbed = ray
+            .ground()
+            .and_then(|at| self.playthrough.as_ref()?.obstacle_at(at));
         self.grabbed.is_some()
     }
 

@@ -2,7 +2,7 @@
 
 use super::body_run::BodyRun;
 use super::locomotion_run::LocomotionRun;
-use super::played_run::{PlayedRun, Progress, Query, RunState};
+use super::played_run::{FrameProgress, PlayedRun, Query, RunState};
 use super::run_file::{Played, RunFile};
 use crate::motion::RATE;
 use crate::view::camera::{Camera, FOLLOW, Ray};
@@ -104,7 +104,7 @@ impl Page {
         self.since += seconds.min(MOST_S);
         self.run.look(&self.camera);
         while self.since >= FRAME_S {
-            if self.run.advance()? == Progress::AwaitsMatch {
+            if self.run.advance()? == FrameProgress::AwaitsMatch {
                 // What is late is shown at once, and no time made up for.
                 self.since = FRAME_S;
                 break;

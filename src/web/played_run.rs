@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// How far the next frame has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
+pub enum FrameProgress {
     /// It is shown.
     Shown,
     /// It waits for the search.
@@ -60,9 +60,9 @@ pub trait PlayedRun {
     ///
     /// # Errors
     /// The environment's.
-    fn advance(&mut self) -> Result<Progress>;
+    fn advance(&mut self) -> Result<FrameProgress>;
 
-    /// The query of [`Progress::AwaitsMatch`].
+    /// The query of [`FrameProgress::AwaitsMatch`].
     fn query(&self) -> Option<Query<'_>> {
         None
     }

@@ -1,7 +1,7 @@
 //! A step allocates nothing.
 
 use super::place::PLACE;
-use footwork::runtime::Obstacle;
+use footwork::runtime::MovingObstacle;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -60,12 +60,12 @@ fn the_allocator_is_counted() {
 fn a_step_allocates_nothing() {
     for task in ["plane", "obstacles"] {
         let mut characters = PLACE.characters(task, 7);
-        let obstacle = |i: usize| Obstacle {
+        let obstacle = |i: usize| MovingObstacle {
             centre: [i as f32 - 10.0, 2.0],
             half: [0.4, 0.3],
             velocity: [0.1, -0.2],
         };
-        let obstacles: Vec<Obstacle> = (0..20).map(obstacle).collect();
+        let obstacles: Vec<MovingObstacle> = (0..20).map(obstacle).collect();
         for character in 0..characters.count() {
             characters.set_target(character, [4.0, -3.0]);
             characters.set_obstacles(character, &obstacles);

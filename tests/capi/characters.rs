@@ -5,7 +5,9 @@ use footwork::env::locomotion::cpu::CpuLocomotion;
 use footwork::env::locomotion::{EnvConfig, LEVELS, LocomotionTask, Obstacles};
 use footwork::kernels::locomotion::locomotion_layout::{boxes, state_f32, state_u32};
 use footwork::motion::features::FRAMES_PER_STEP;
-use footwork::runtime::{CharacterPolicy, Characters, CharactersError, Obstacle, PolicyError};
+use footwork::runtime::{
+    CharacterPolicy, Characters, CharactersError, MovingObstacle, PolicyError,
+};
 use std::sync::Arc;
 
 /// An environment of one whose character stands where a fresh one does.
@@ -36,11 +38,11 @@ fn environment(task: LocomotionTask, target: [f32; 2]) -> CpuLocomotion {
 }
 
 /// What an environment's obstacles are.
-fn obstacles(env: &CpuLocomotion) -> Vec<Obstacle> {
+fn obstacles(env: &CpuLocomotion) -> Vec<MovingObstacle> {
     let count = env.params.task.obstacles();
     let of = |slot: usize| {
         let [x, z, half_x, half_z] = env.obstacle(0, slot);
-        Obstacle {
+        MovingObstacle {
             centre: [x, z],
             half: [half_x, half_z],
             velocity: [0, 1].map(|axis| env.obstacle_velocity[axis * count + slot]),

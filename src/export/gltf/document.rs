@@ -9,14 +9,14 @@ use gltf_json::validation::USize64;
 use gltf_json::{Asset, Index, Root};
 
 /// What accessors hold.
-pub trait Element: Pod {
+pub trait AccessorElement: Pod {
     const COMPONENT: ComponentType;
     const TYPE: Type;
 }
 
 macro_rules! elements {
     ($($element:ty: $component:ident $kind:ident;)*) => {
-        $(impl Element for $element {
+        $(impl AccessorElement for $element {
             const COMPONENT: ComponentType = ComponentType::$component;
             const TYPE: Type = Type::$kind;
         })*
@@ -54,7 +54,7 @@ impl Document {
     }
 
     /// Adds elements; `target` says what a mesh uses them for.
-    pub fn accessor<T: Element>(
+    pub fn accessor<T: AccessorElement>(
         &mut self,
         elements: &[T],
         target: Option<Target>,
@@ -90,7 +90,7 @@ impl Document {
     }
 
     /// Adds elements of real numbers with the bounds of each.
-    pub fn bounded<T: Element>(
+    pub fn bounded<T: AccessorElement>(
         &mut self,
         elements: &[T],
         target: Option<Target>,

@@ -9,8 +9,9 @@ use crate::train::config::VERSION;
 use anyhow::Result;
 use prost::Message;
 use schema::{
-    AttributeMessage, Dimension, DimensionValue, FLOAT, GraphMessage, INT, INT64, INTS, Model,
-    NodeMessage, OperatorSet, StringEntry, Tensor, TensorShape, TensorType, ValueInfo, ValueType,
+    AttributeMessage, Dimension, DimensionValue, FLOAT, GraphMessage, INT, INT64, INTS,
+    ModelMessage, NodeMessage, OperatorSet, StringEntry, Tensor, TensorShape, TensorType,
+    ValueInfo, ValueType,
 };
 
 /// The format in the list.
@@ -31,7 +32,7 @@ const IR_VERSION: i64 = 7;
 fn write(run: &TrainedRun) -> Result<Vec<u8>> {
     let ExportedPolicy { graph, description } = export_policy(run)?;
     let entry = |(key, value)| StringEntry { key, value };
-    let model = Model {
+    let model = ModelMessage {
         ir_version: IR_VERSION,
         opset_import: vec![OperatorSet {
             domain: String::new(),

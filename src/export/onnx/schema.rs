@@ -2,15 +2,15 @@
 
 use prost::{Message, Oneof};
 
-/// Of [`Tensor::data_type`] and [`TensorType::elem_type`]: 32-bit floats, 64-bit integers.
+/// Values of [`Tensor::data_type`] and [`TensorType::elem_type`]: 32-bit floats, 64-bit integers.
 pub const FLOAT: i32 = 1;
 pub const INT64: i32 = 7;
-/// Of [`AttributeMessage::kind`]: an integer, a list of them.
+/// Values of [`AttributeMessage::kind`]: an integer, a list of them.
 pub const INT: i32 = 2;
 pub const INTS: i32 = 7;
 
 #[derive(Clone, PartialEq, Message)]
-pub struct Model {
+pub struct ModelMessage {
     #[prost(int64, tag = "1")]
     pub ir_version: i64,
     #[prost(message, repeated, tag = "8")]

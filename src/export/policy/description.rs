@@ -61,7 +61,7 @@ pub struct PortDescription {
     pub name: &'static str,
     /// Its shape behind the batch.
     pub shape: Vec<usize>,
-    /// Of every number.
+    /// The type of every number.
     pub dtype: &'static str,
     /// What it is.
     pub meaning: String,

@@ -11,7 +11,7 @@ pub struct OpponentTable {
     pub scripted: usize,
     /// Their numbers, ascending; not empty.
     pub numbers: Vec<u32>,
-    /// Of 2^24 draws, how many draw each or one before it.
+    /// How many of 2^24 draws draw each opponent or one before it.
     pub lots: Vec<u32>,
 }
 
