@@ -258,6 +258,16 @@ impl Sections {
         self.0.insert(name.to_string(), section);
     }
 
+    /// The names of all sections.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+
+    /// Puts all sections of others in.
+    pub fn extend(&mut self, others: Sections) {
+        self.0.extend(others.0);
+    }
+
     /// A section by name.
     ///
     /// # Errors

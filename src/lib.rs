@@ -48,6 +48,7 @@
 //! - [`playback`]: the whole body of an episode: stitching, foot locking, motion quality;
 //! - `nn`: networks, their evaluation and their gradients (feature `train`);
 //! - `env`: batches of environments behind one trait: motion matching, simulated bodies (`train`);
+//! - `ranks`: processes that train together (`train`; over MPI with `mpi`);
 //! - `rl`: rollouts, advantages, PPO (`train`);
 //! - `train`: tasks by name, configuration, run directory, checkpoints, evaluation (`train`);
 //! - `runtime`: trained characters, stepped from somebody's own loop (`train`);
@@ -94,6 +95,8 @@ pub mod nn;
 pub mod physics;
 pub mod playback;
 pub mod prelude;
+#[cfg(feature = "train")]
+pub mod ranks;
 pub mod report;
 #[cfg(feature = "train")]
 pub mod rl;

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Top-level modules from the roof to the ground; those of a line do not know each other.
-const ORDER: [&[&str]; 13] = [
+const ORDER: [&[&str]; 14] = [
     &["cli", "capi", "prelude"],
     &["viewer", "web"],
     &["bench", "export"],
@@ -21,6 +21,7 @@ const ORDER: [&[&str]; 13] = [
     &["kernels"],
     &["physics", "playback"],
     &["motion"],
+    &["ranks"],
     &["gpu"],
 ];
 /// Modules beside the order: everybody may use them, and they know none of the others.

@@ -7,6 +7,7 @@ use super::train::{Choices, Opened, on_interrupt};
 use anyhow::Result;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
+use footwork::ranks::Ranks;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::comparison::{Comparison, Contestant, Outcome};
 use footwork::train::config::Config;
@@ -61,7 +62,7 @@ impl Ablate {
         };
         let interrupted = on_interrupt()?;
         let mut config = self.choices.config(entry)?;
-        let Opened { device, task, .. } = Opened::new(entry, &mut config)?;
+        let Opened { device, task, .. } = Opened::new(entry, &mut config, &Ranks::alone())?;
         let out = self.out.unwrap_or_else(|| ablation.folder.into());
         let start = self.choices.start()?;
         let comparison = Comparison {

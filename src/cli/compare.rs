@@ -7,6 +7,7 @@ use super::train::{Choices, Opened, on_interrupt};
 use anyhow::Result;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
+use footwork::ranks::Ranks;
 use footwork::rl::ase::STEPS_PER_DECISION;
 use footwork::train::comparison::{Comparison, Contestant};
 use footwork::train::config::Config;
@@ -52,8 +53,8 @@ impl Compare {
         let start = self.choices.start()?;
         let [mut acting, mut steered] = self.configurations(entry)?;
         let [direct, high] = [
-            Opened::new(entry, &mut acting)?,
-            Opened::new(entry, &mut steered)?,
+            Opened::new(entry, &mut acting, &Ranks::alone())?,
+            Opened::new(entry, &mut steered, &Ranks::alone())?,
         ];
         let out = format!("runs/compare-{}", entry.name).into();
         let out = self.out.unwrap_or(out);

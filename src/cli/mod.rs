@@ -14,6 +14,7 @@ mod latents;
 #[cfg(feature = "viewer")]
 mod play;
 mod progress;
+mod ranks;
 #[cfg(feature = "viewer")]
 mod render;
 mod run;
@@ -80,8 +81,11 @@ pub fn run() -> Result<()> {
 
 impl Command {
     fn run(self) -> Result<()> {
+        if !matches!(self, Command::Train(_)) {
+            ranks::refuse()?;
+        }
         match self {
-            Command::Train(train) => train.run(),
+            Command::Train(train) => ranks::together(|ranks| train.run(ranks)),
             Command::Ablate(ablate) => ablate.run(),
             Command::Compare(compare) => compare.run(),
             Command::Eval(eval) => eval.run(),

@@ -3,7 +3,10 @@
 use std::fmt::Arguments;
 use std::io::{self, ErrorKind, Write};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Whether somebody else says it all.
+static SILENT: AtomicBool = AtomicBool::new(false);
 /// Why something could not be printed, if it matters.
 static FAILURE: Mutex<Option<io::Error>> = Mutex::new(None);
 
@@ -24,8 +27,17 @@ macro_rules! tell {
 
 pub(crate) use {say, show, tell};
 
+/// Lets this process say nothing from now on but what it complains about: another one speaks for both.
+#[cfg(feature = "mpi")]
+pub fn silence() {
+    SILENT.store(true, Ordering::Relaxed);
+}
+
 /// Prints to stdout.
 pub fn print(text: Arguments) {
+    if SILENT.load(Ordering::Relaxed) {
+        return;
+    }
     let mut stdout = io::stdout().lock();
     let printed = stdout.write_fmt(text).and_then(|()| stdout.flush());
     match printed {
@@ -45,6 +57,13 @@ const LEFT: usize = 60;
 
 /// Prints a message to stderr.
 pub fn report(message: &str) {
+    if !SILENT.load(Ordering::Relaxed) {
+        complain(message);
+    }
+}
+
+/// Prints a message to stderr, whoever speaks.
+pub fn complain(message: &str) {
     let _ = writeln!(io::stderr(), "{}", printable(message));
 }
 

@@ -13,9 +13,11 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use footwork::env::EnvSpec;
 use footwork::gpu::{Choice, Device};
+use footwork::ranks::Ranks;
 use footwork::rl::ase::LowLevel;
 use footwork::rl::rollout::check_fits;
 use footwork::rl::task_weight::WeightRule;
+use footwork::train::agreement;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Preset};
 use footwork::train::memory;
@@ -160,28 +162,36 @@ fn names() -> PossibleValuesParser {
 }
 
 impl Train {
-    pub fn run(self) -> Result<()> {
+    /// Trains, or does this rank's share of it.
+    pub fn run(self, ranks: &Ranks) -> Result<()> {
         let entry = find(&self.task)?;
         let interrupted = on_interrupt()?;
-        let resumed = self.resume.as_deref().map(claim).transpose()?;
+        let resumed = self.resume.as_deref();
+        let resumed = resumed.map(|run| claim(run, ranks)).transpose()?;
         let mut config = match &resumed {
             Some((run, _)) => self.same(run, entry)?,
             None => self.fresh(entry)?,
         };
         self.limit(&mut config);
-        let opened = Opened::new(entry, &mut config)?;
+        let opened = Opened::new(entry, &mut config, ranks)?;
         let start = self.choices.start()?;
         let from = match &resumed {
             Some((run, path)) => Some(go_on(run, path, &config, &opened)?),
             None => None,
         };
+        let checkpoint = from.as_ref().or(start.as_ref());
+        agreement::check(ranks, &config, &*opened.task, checkpoint)?;
         let run = match resumed {
             Some((run, _)) => run,
-            None => RunDir::create(self.out.as_deref(), entry.name)?,
+            None => shared_folder(ranks, || RunDir::create(self.out.as_deref(), entry.name))?,
         };
         let (task, device) = (&*opened.task, &opened.device);
+        let several = match ranks.count() {
+            1 => String::new(),
+            count => format!(" on each of {count} ranks' shares"),
+        };
         tell!(
-            "training `{}` on {}: {} environments, {}; run folder {}",
+            "training `{}` on {}: {} environments{several}, {}; run folder {}",
             entry.name,
             device.name(),
             config.ppo.envs,
@@ -193,9 +203,13 @@ impl Train {
             task,
             run: &run,
             device,
+            ranks,
             start: start.as_ref(),
         };
-        tell(training, &self.train(training, from, interrupted)?);
+        let summary = self.train(training, from, interrupted)?;
+        if ranks.is_first() {
+            tell(training, &summary);
+        }
         Ok(())
     }
 
@@ -205,6 +219,9 @@ impl Train {
         from: Option<Checkpoint>,
         interrupted: &AtomicBool,
     ) -> Result<Summary> {
+        if !training.ranks.is_first() {
+            return train(training, from, interrupted, &mut ());
+        }
         let progress = Progress::new(training.config);
         #[cfg(feature = "viewer")]
         if self.watch {
@@ -326,12 +343,16 @@ pub struct Opened {
 
 impl Opened {
     /// Checks a configuration and opens its device and data; what they turn out to be goes into it.
-    pub fn new(entry: &TaskEntry, config: &mut Config) -> Result<Opened> {
+    pub fn new(entry: &TaskEntry, config: &mut Config, ranks: &Ranks) -> Result<Opened> {
         let spec = entry.check(config)?;
+        let share = EnvSpec {
+            envs: share_of(ranks, spec.envs)?,
+            ..spec
+        };
         let device = Device::open(config.device)?;
-        check_fits(&device, &spec, config.ppo.rollout_length)?;
+        check_fits(&device, &share, config.ppo.rollout_length)?;
         if let Device::Cpu = device {
-            let bytes = memory::of_training(&spec, config);
+            let bytes = memory::of_training(&share, config);
             memory::check(bytes, "use a smaller --envs or ppo.rollout_length")?;
         }
         // A resumed run must not change its device because another has appeared.
@@ -363,10 +384,37 @@ fn same_task(run: &RunDir, entry: &TaskEntry) -> Result<Config> {
     Ok(config)
 }
 
+/// A rank's number of environments.
+fn share_of(ranks: &Ranks, envs: usize) -> Result<usize> {
+    let count = ranks.count();
+    match envs.is_multiple_of(count) && envs >= count {
+        true => Ok(envs / count),
+        false => Err(Usage(format!(
+            "{count} ranks cannot share {envs} environments: give a multiple of {count} as --envs"
+        ))
+        .into()),
+    }
+}
+
 /// A run that nobody else writes, and the checkpoint that it goes on from.
-fn claim(run: &Path) -> Result<(RunDir, PathBuf)> {
+fn claim(run: &Path, ranks: &Ranks) -> Result<(RunDir, PathBuf)> {
     let (run, checkpoint) = locate(run)?;
-    Ok((run.claimed()?, checkpoint))
+    Ok((shared_folder(ranks, || run.claimed())?, checkpoint))
+}
+
+/// A run's folder that the first rank makes or claims, for all.
+fn shared_folder(ranks: &Ranks, first: impl FnOnce() -> Result<RunDir>) -> Result<RunDir> {
+    if ranks.is_first() {
+        let run = first()?;
+        let path = run.path().as_os_str().as_encoded_bytes();
+        ranks.broadcast(&mut path.to_vec());
+        return Ok(run);
+    }
+    let mut path = Vec::new();
+    ranks.broadcast(&mut path);
+    Ok(RunDir::of_first(
+        String::from_utf8_lossy(&path).as_ref().as_ref(),
+    ))
 }
 
 /// The checkpoint that a run goes on from.

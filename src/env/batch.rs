@@ -10,6 +10,7 @@ use super::stats::Stats;
 use super::vec_env::VecEnv;
 use crate::container::{Section, SectionError};
 use crate::gpu::{Array, Device};
+use crate::ranks::Ranks;
 use anyhow::Result;
 use std::ops::Range;
 
@@ -17,37 +18,68 @@ use std::ops::Range;
 /// number of cores; where there are more, they share in the searches of a part.
 const PARTS: usize = 4;
 
-/// All environments of a training.
+/// How the names of the sections of a batch's parts begin; the part's number follows.
+pub const ENVS: &str = "envs.";
+
+/// The environments of a training; of one on several ranks, this rank's.
 pub struct EnvBatch {
     /// Parts that together are the batch, in the order of their environments.
     pub parts: Vec<Box<dyn VecEnv>>,
     /// How the difficulty rises, if it does.
     pub curriculum: Option<Curriculum>,
+    /// Who trains with this process.
+    pub ranks: Ranks,
+    /// Number of the first of these environments, and of the first part, among those of all ranks.
+    first: [usize; 2],
 }
 
 impl EnvBatch {
-    /// `envs` environments, opened in parts: `open` is given the numbers of a part's environments.
+    /// This rank's share of `envs` environments, opened in parts: `open` is given the numbers of a part's environments.
     ///
     /// # Errors
     /// Those of `open`.
     pub fn open(
         device: &Device,
+        ranks: &Ranks,
         envs: usize,
         curriculum: Option<Curriculum>,
         open: impl Fn(Range<usize>) -> Result<Box<dyn VecEnv>>,
     ) -> Result<Self> {
-        let parts = match device {
+        let least = match device {
             Device::Cpu => PARTS.min(envs).max(1),
             Device::Gpu(_) => 1,
         };
-        let ranges = (0..parts).map(|part| envs * part / parts..envs * (part + 1) / parts);
+        // As many on every rank.
+        let all = least.next_multiple_of(ranks.count());
+        let share = ranks.share(all);
+        let first = [envs * share.start / all, share.start];
+        let ranges = share.map(|part| envs * part / all..envs * (part + 1) / all);
         let parts = ranges.map(open).collect::<Result<Vec<_>>>()?;
-        let mut batch = EnvBatch { parts, curriculum };
+        let mut batch = EnvBatch {
+            ranks: ranks.clone(),
+            first,
+            ..Self::new(parts, curriculum)
+        };
         batch.set_level();
         Ok(batch)
     }
 
-    /// The dimensions of all environments together.
+    /// Environments of a process that trains alone.
+    pub fn new(parts: Vec<Box<dyn VecEnv>>, curriculum: Option<Curriculum>) -> Self {
+        EnvBatch {
+            parts,
+            curriculum,
+            ranks: Ranks::alone(),
+            first: [0, 0],
+        }
+    }
+
+    /// Number of the first row among those of all ranks.
+    pub fn first_row(&self) -> usize {
+        self.first[0] * self.spec().agents
+    }
+
+    /// The dimensions of these environments together.
     pub fn spec(&self) -> EnvSpec {
         let envs = self.parts.iter().map(|part| part.spec().envs).sum();
         EnvSpec {
@@ -80,7 +112,7 @@ impl EnvBatch {
 
     /// Takes an update's statistics in, and raises the level where that is due.
     pub fn advance_curriculum(&mut self, stats: &Stats) {
-        let envs = self.spec().envs;
+        let envs = self.spec().envs * self.ranks.count();
         if let Some(curriculum) = &mut self.curriculum
             && curriculum.advance(stats, envs)
         {
@@ -124,10 +156,10 @@ impl EnvBatch {
     /// The device was lost.
     pub fn save(&self) -> Result<Vec<(String, Section)>> {
         let mut sections = Vec::new();
-        for (number, part) in self.parts.iter().enumerate() {
+        for (number, part) in (self.first[1]..).zip(&self.parts) {
             let mut section = Section::default();
             part.save(&mut section)?;
-            sections.push((format!("envs.{number}"), section));
+            sections.push((format!("{ENVS}{number}"), section));
         }
         if let Some(curriculum) = &self.curriculum {
             let mut section = Section::default();
@@ -145,9 +177,20 @@ impl EnvBatch {
         &mut self,
         mut section: impl FnMut(&str) -> Result<Section, SectionError>,
     ) -> Result<(), SectionError> {
-        for (number, part) in self.parts.iter_mut().enumerate() {
-            part.load(&mut section(&format!("envs.{number}"))?)?;
+        for (number, part) in (self.first[1]..).zip(&mut self.parts) {
+            part.load(&mut section(&format!("{ENVS}{number}"))?)?;
         }
+        self.load_level(section)
+    }
+
+    /// Puts back the level that [`EnvBatch::save`] wrote, of environments that begin new episodes.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn load_level(
+        &mut self,
+        mut section: impl FnMut(&str) -> Result<Section, SectionError>,
+    ) -> Result<(), SectionError> {
         if self.curriculum.is_some() {
             self.curriculum = Some(section("curriculum")?.get("curriculum")?);
         }

@@ -65,6 +65,11 @@ impl Policy {
         &self.parameters[self.networks.log_std()]
     }
 
+    /// Checksum of the parameters.
+    pub fn hash(&self) -> u32 {
+        crc32fast::hash(bytemuck::cast_slice(&self.parameters))
+    }
+
     /// Whether another policy differs by its numbers alone.
     pub fn has_form_of(&self, other: &Policy) -> bool {
         let form = |policy: &Policy| (policy.networks.clone(), policy.normalizer.is_some());

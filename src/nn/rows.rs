@@ -120,23 +120,22 @@ pub fn add_sum(device: &Device, values: &Array, to: &mut Array) {
     }
 }
 
-/// Adds `rate` times some of the `parameters` to the `gradient` of the same indices: the gradient of a decay
-/// of these weights.
-pub fn decay(
+/// Adds `factor` times a range of `values` to the numbers of the same indices.
+pub fn add_scaled(
     device: &Device,
-    parameters: &Array,
+    values: &Array,
     range: Range<usize>,
-    rate: f32,
-    gradient: &mut Array,
+    factor: f32,
+    to: &mut Array,
 ) {
     match device {
         Device::Cpu => {
-            let gradient = gradient.host_mut()[range.clone()].iter_mut();
-            let pairs = gradient.zip(&parameters.host()[range]);
-            pairs.for_each(|(gradient, parameter)| *gradient += rate * parameter);
+            let pairs = to.host_mut()[range.clone()].iter_mut();
+            let pairs = pairs.zip(&values.host()[range]);
+            pairs.for_each(|(sum, value)| *sum += factor * value);
         }
         #[cfg(feature = "gpu")]
-        Device::Gpu(gpu) => tensors::decay(gpu, parameters, range, rate, gradient),
+        Device::Gpu(gpu) => tensors::add_scaled(gpu, values, range, factor, to),
         #[cfg(not(feature = "gpu"))]
         Device::Gpu(_) => unreachable!("there is no GPU without the feature `gpu`"),
     }

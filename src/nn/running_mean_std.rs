@@ -5,6 +5,7 @@ use crate::container::{Section, SectionError};
 use crate::gpu::{Array, Device};
 #[cfg(feature = "gpu")]
 use crate::nn::gpu::moments;
+use crate::ranks::Ranks;
 use anyhow::Result;
 use rayon::prelude::*;
 
@@ -45,8 +46,46 @@ impl RunningMeanStd {
 
     /// Takes rows `[rows][dim]` in.
     pub fn update(&mut self, values: &Array, rows: usize) {
+        let weight = self.weigh(rows);
+        self.take_in(values, rows, weight);
+    }
+
+    /// Takes rows `[rows][dim]` of every rank in.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn update_over(&mut self, ranks: &Ranks, values: &Array, rows: usize) -> Result<()> {
+        if ranks.is_alone() {
+            self.update(values, rows);
+            return Ok(());
+        }
+        let mut own = self.clone();
+        own.take_in(values, rows, 1.0);
+        let (own, mut moments) = (own.on_host()?, self.on_host()?.moments.host().to_vec());
+        // Differences from the old mean, and their squares.
+        let shifts = own.mean().iter().zip(&moments);
+        let shifts: Vec<f32> = shifts.map(|(own, old)| own - old).collect();
+        let squares = own.moments()[self.dim..].iter().zip(&shifts);
+        let squares = squares.map(|(variance, shift)| variance + shift * shift);
+        let mut sums: Vec<f32> = shifts.iter().copied().chain(squares).collect();
+        ranks.sum(&mut sums);
+        let weight = self.weigh(rows * ranks.count());
+        for column in 0..self.dim {
+            let mean = |at: usize| f64::from(sums[at]) / ranks.count() as f64;
+            let (shift, square) = (mean(column), mean(self.dim + column));
+            mix(&mut moments, column, shift, square, weight);
+        }
+        self.moments = Array::from_slice(&self.device, &moments);
+        Ok(())
+    }
+
+    /// The part that so many new rows have in all.
+    fn weigh(&mut self, rows: usize) -> f64 {
         self.count += rows as f64;
-        let weight = rows as f64 / self.count;
+        rows as f64 / self.count
+    }
+
+    fn take_in(&mut self, values: &Array, rows: usize, weight: f64) {
         match &self.device {
             Device::Cpu => {
                 let values = &values.host()[..rows * self.dim];
@@ -200,13 +239,13 @@ impl RunningMeanStd {
 /// Mixes the moments of rows in (Chan, Golub and LeVeque 1979), at a `weight` of their part of all rows.
 fn take_in(moments: &mut [f32], rows: &[f32], weight: f64) {
     let dim = moments.len() / 2;
-    let (means, variances) = moments.split_at_mut(dim);
+    let means = &moments[..dim];
     let count = (rows.len() / dim) as f64;
     // Sums of differences from the old mean, and of their squares.
     let chunk = |rows: &[f32]| {
         let mut sums = vec![[0.0f64; 2]; dim];
         for row in rows.chunks_exact(dim) {
-            for ((sum, value), mean) in sums.iter_mut().zip(row).zip(&*means) {
+            for ((sum, value), mean) in sums.iter_mut().zip(row).zip(means) {
                 let difference = f64::from(value - mean);
                 sum[0] += difference;
                 sum[1] += difference * difference;
@@ -219,12 +258,17 @@ fn take_in(moments: &mut [f32], rows: &[f32], weight: f64) {
         let [sum, squares] = chunks.iter().fold([0.0; 2], |sum, chunk| {
             [sum[0] + chunk[column][0], sum[1] + chunk[column][1]]
         });
-        let shift = sum / count;
-        let variance = squares / count - shift * shift;
-        let mixed = (1.0 - weight) * f64::from(variances[column]) + weight * variance;
-        variances[column] = (mixed + weight * (1.0 - weight) * shift * shift).max(0.0) as f32;
-        means[column] = (f64::from(means[column]) + weight * shift) as f32;
+        mix(moments, column, sum / count, squares / count, weight);
     }
+}
+
+/// Mixes in what some rows of a column have as mean difference from the old mean, and as mean square of it.
+fn mix(moments: &mut [f32], column: usize, shift: f64, square: f64, weight: f64) {
+    let (means, variances) = moments.split_at_mut(moments.len() / 2);
+    let variance = square - shift * shift;
+    let mixed = (1.0 - weight) * f64::from(variances[column]) + weight * variance;
+    variances[column] = (mixed + weight * (1.0 - weight) * shift * shift).max(0.0) as f32;
+    means[column] = (f64::from(means[column]) + weight * shift) as f32;
 }
 
 fn normalize(moments: &[f32], rows: &mut [f32]) {

@@ -5,8 +5,9 @@ use super::rollout::Rollout;
 use crate::container::{Section, SectionError};
 use crate::gpu::{Array, Device};
 use crate::kernels::learn::normalize_advantages;
-use crate::kernels::learn::rollout_moments::{Params, launch, scale, twin};
+use crate::kernels::learn::rollout_moments::{Params, launch, over_ranks, scale};
 use crate::nn::rows;
+use crate::ranks::Ranks;
 use anyhow::Result;
 
 /// Weight of the newest rollout in the running moments.
@@ -15,6 +16,7 @@ const NEWEST: f32 = 0.1;
 /// Running mean and mean square of the returns of each stream of rewards, in units of reward.
 pub struct ValueNormalizer {
     device: Device,
+    ranks: Ranks,
     streams: usize,
     /// `[streams][mean, mean square]`
     moments: Array,
@@ -25,7 +27,7 @@ pub struct ValueNormalizer {
 
 impl ValueNormalizer {
     /// Mean 0, standard deviation 1 of each stream, whose advantages have these `weights`.
-    pub fn new(device: &Device, weights: &[f32]) -> Self {
+    pub fn new(device: &Device, ranks: &Ranks, weights: &[f32]) -> Self {
         let mut values = vec![0.0; weights.len() * scale::FIELDS];
         for (values, &weight) in values.chunks_exact_mut(scale::FIELDS).zip(weights) {
             values[scale::OLD_STD] = 1.0;
@@ -33,6 +35,7 @@ impl ValueNormalizer {
         }
         ValueNormalizer {
             device: device.clone(),
+            ranks: ranks.clone(),
             streams: weights.len(),
             moments: Array::from_slice(device, &[0.0, 1.0].repeat(weights.len())),
             scale: Array::from_slice(device, &values),
@@ -52,9 +55,12 @@ impl ValueNormalizer {
         rows::replace(&self.device, &mut self.scale, at, &weight);
     }
 
-    /// Takes the returns of rollouts in. The first ones count in full, so that the moments start
+    /// Takes the returns of rollouts in, those of all ranks. The first ones count in full, so that the moments start
     /// right. Afterwards the scale holds what normalises their samples.
-    pub fn update(&mut self, rollouts: &[Rollout]) {
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn update(&mut self, rollouts: &[Rollout]) -> Result<()> {
         self.updates += 1;
         let params = |stream: usize| Params {
             samples: rollouts.iter().map(|part| part.samples() as u32).sum(),
@@ -63,18 +69,7 @@ impl ValueNormalizer {
             stream: stream as u32,
         };
         match &self.device {
-            Device::Cpu => {
-                let values = joined(rollouts, |part| &part.log_prob_and_value, 1);
-                let returns = joined(rollouts, |part| &part.advantage_and_return, self.streams);
-                let groups: Vec<&[u32]> = rollouts.iter().map(|part| part.group.host()).collect();
-                let groups = groups.concat();
-                for stream in 0..self.streams {
-                    let params = params(stream);
-                    let (moments, scale) = (self.moments.host_mut(), self.scale.host_mut());
-                    twin(&values, &returns, &groups, moments, scale, &params);
-                }
-            }
-            Device::Gpu(gpu) => {
+            Device::Gpu(gpu) if self.ranks.is_alone() => {
                 for stream in 0..self.streams {
                     launch(
                         gpu,
@@ -87,7 +82,29 @@ impl ValueNormalizer {
                     );
                 }
             }
+            device => {
+                let values = joined(device, rollouts, |part| &part.log_prob_and_value, 1)?;
+                let streams = self.streams;
+                let returns = joined(device, rollouts, |part| &part.advantage_and_return, streams)?;
+                let groups = rollouts.iter().map(|part| part.group.read(device));
+                let groups = groups.collect::<Result<Vec<_>>>()?.concat();
+                let mut moments = self.moments.read(device)?;
+                let mut scale = self.scale.read(device)?;
+                for stream in 0..streams {
+                    over_ranks(
+                        [&values, &returns],
+                        &groups,
+                        &mut moments,
+                        &mut scale,
+                        &params(stream),
+                        |sums| together(&self.ranks, sums),
+                    );
+                }
+                self.moments = Array::from_slice(device, &moments);
+                self.scale = Array::from_slice(device, &scale);
+            }
         }
+        Ok(())
     }
 
     /// Normalises the advantages of rollouts that have been taken in, each group's apart, and weighs them.
@@ -155,11 +172,30 @@ impl ValueNormalizer {
     }
 }
 
+/// Sums over the ranks, where there are several; they are told as floats of 32 bits.
+fn together(ranks: &Ranks, sums: &mut [f64]) {
+    if ranks.is_alone() {
+        return;
+    }
+    let mut told: Vec<f32> = sums.iter().map(|&sum| sum as f32).collect();
+    ranks.sum(&mut told);
+    for (sum, told) in sums.iter_mut().zip(told) {
+        *sum = told.into();
+    }
+}
+
 /// Two columns, of which the first has `width` numbers a sample, of all parts, from those of each.
-fn joined(rollouts: &[Rollout], of: fn(&Rollout) -> &Array, width: usize) -> Vec<f32> {
-    let halves = rollouts
-        .iter()
-        .map(|part| of(part).host().split_at(width * part.samples()));
-    let (first, second): (Vec<&[f32]>, Vec<&[f32]>) = halves.unzip();
-    [first.concat(), second.concat()].concat()
+fn joined(
+    device: &Device,
+    rollouts: &[Rollout],
+    of: fn(&Rollout) -> &Array,
+    width: usize,
+) -> Result<Vec<f32>> {
+    let (mut first, mut second) = (Vec::new(), Vec::new());
+    for part in rollouts {
+        let mut both = of(part).read(device)?;
+        second.push(both.split_off(width * part.samples()));
+        first.push(both);
+    }
+    Ok([first.concat(), second.concat()].concat())
 }

@@ -7,8 +7,10 @@ use super::config::{Config, Difference, VERSION};
 use super::fingerprint::Fingerprint;
 use super::state::TrainerState;
 use crate::container::{Format, Section, SectionError, Sections, StoreError};
-use crate::env::{EnvBatch, EnvSpec};
+use crate::env::EnvSpec;
+use crate::env::batch::{ENVS, EnvBatch};
 use crate::nn::Policy;
+use crate::ranks::Ranks;
 use crate::rl::Algorithm;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -130,21 +132,19 @@ pub enum CheckpointError {
 }
 
 impl Checkpoint {
-    /// Copies a run's state to the host.
+    /// Copies a run's state to the host, that of the environments of all ranks.
     ///
     /// # Errors
-    /// The device was lost.
+    /// The device was lost; or this rank's policy is no longer the first one's.
     pub fn take(
         header: Header,
         learner: &dyn Algorithm,
         envs: &EnvBatch,
         state: &TrainerState,
     ) -> anyhow::Result<Self> {
-        let mut sections = Sections::default();
-        for (name, section) in envs.save()? {
-            sections.put(&name, section);
-        }
         let policy = learner.policy()?;
+        check_agreement(&envs.ranks, policy.hash())?;
+        let mut sections = saved_envs(envs)?;
         let mut section = Section::default();
         policy.save(&mut section)?;
         sections.put("policy", section);
@@ -283,14 +283,63 @@ impl Checkpoint {
         mut self,
         learner: &mut dyn Algorithm,
         envs: &mut EnvBatch,
-    ) -> Result<TrainerState, CheckpointError> {
-        let mut restore = || -> Result<TrainerState, SectionError> {
+    ) -> Result<Restored, CheckpointError> {
+        let parts = self.sections.names();
+        let parts = parts.filter(|name| name.starts_with(ENVS)).count();
+        let same = parts == envs.parts.len() * envs.ranks.count();
+        let mut restore = || -> Result<Restored, SectionError> {
             learner.load(&mut self.sections.take("learner")?, &self.policy)?;
-            envs.load(|name| self.sections.take(name))?;
-            TrainerState::load(&mut self.sections.take("trainer")?)
+            match same {
+                true => envs.load(|name| self.sections.take(name))?,
+                false => envs.load_level(|name| self.sections.take(name))?,
+            }
+            Ok(Restored {
+                state: TrainerState::load(&mut self.sections.take("trainer")?)?,
+                envs: same,
+            })
         };
         restore().map_err(|error| damaged(&self.path, error))
     }
+}
+
+/// What a checkpoint was put back into.
+pub struct Restored {
+    /// What the trainer remembers.
+    pub state: TrainerState,
+    /// Whether the environments go on with their episodes. They begin new ones where another number of ranks shares them
+    /// out otherwise.
+    pub envs: bool,
+}
+
+/// The environments of all ranks.
+fn saved_envs(envs: &EnvBatch) -> anyhow::Result<Sections> {
+    let mut own = Sections::default();
+    for (name, section) in envs.save()? {
+        own.put(&name, section);
+    }
+    if envs.ranks.is_alone() {
+        return Ok(own);
+    }
+    // On its way it has no place in a file system.
+    let nowhere = Path::new("");
+    let mut all = Sections::default();
+    for sent in envs.ranks.gather(&own.to_bytes(nowhere, FORMAT)?) {
+        all.extend(Sections::from_bytes(nowhere, &sent, FORMAT)?);
+    }
+    Ok(all)
+}
+
+/// Refuses to go on where a rank has another policy than the first.
+fn check_agreement(ranks: &Ranks, hash: u32) -> anyhow::Result<()> {
+    let mut first = hash.to_le_bytes().to_vec();
+    ranks.broadcast(&mut first);
+    anyhow::ensure!(
+        first == hash.to_le_bytes(),
+        "rank {} computes otherwise than the first, and has another policy by now: let all of them run on machines and \
+         libraries of one kind",
+        ranks.rank().number
+    );
+    Ok(())
 }
 
 fn damaged(path: &Path, error: SectionError) -> CheckpointError {

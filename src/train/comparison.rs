@@ -13,6 +13,7 @@ use super::trainer::{EPISODES, Training, train};
 use crate::container::write_whole;
 use crate::env::EnvSpec;
 use crate::gpu::Device;
+use crate::ranks::Ranks;
 use crate::report::table::table;
 use anyhow::{Result, bail};
 use std::path::Path;
@@ -126,6 +127,7 @@ impl Comparison<'_> {
                 task,
                 run: &run,
                 device: self.device,
+                ranks: &Ranks::alone(),
                 start: contestant.start,
             };
             observer.begins(&config);

@@ -15,6 +15,7 @@ use crate::matching::MotionMatcher;
 use crate::motion::normalise::Weights;
 use crate::nn::Policy;
 use crate::playback::quality::compare;
+use crate::ranks::Ranks;
 use anyhow::Result;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -133,7 +134,7 @@ impl Locomotion {
     ///
     /// # Errors
     /// The device cannot hold them.
-    pub fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
+    pub fn open(&self, device: &Device, ranks: &Ranks, envs: usize, seed: u32) -> Result<EnvBatch> {
         let config = EnvConfig {
             task: self.task,
             envs,
@@ -143,7 +144,7 @@ impl Locomotion {
                 .curriculum()
                 .map_or(LEVELS - 1, |curriculum| curriculum.level()),
         };
-        config.open(device, &self.matcher)
+        config.open_share(device, ranks, &self.matcher)
     }
 
     /// Runs the evaluation episodes of the hardest level.

@@ -39,6 +39,9 @@ pub struct UpdateMetrics {
     pub env_s: f64,
     /// Seconds of learning.
     pub learn_s: f64,
+    /// Seconds of these in which the first rank talked to the others, and waited for them.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub communication_s: Option<f64>,
     /// Whatever else has a name: losses; means of the environments' own statistics over the episodes
     /// that ended; and, when the evaluation episodes were run, what they found, as `evaluated_...`.
     #[serde(flatten)]

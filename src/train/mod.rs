@@ -3,6 +3,7 @@
 //! [`trainer`] and [`checkpoint`] know no task. A [`task`] is one value that opens environments,
 //! evaluates policies and draws figures; [`tasks`] is the list of them.
 
+pub mod agreement;
 pub mod anchors;
 pub mod body_episodes;
 pub mod body_policy;

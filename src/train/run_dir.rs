@@ -35,6 +35,12 @@ pub struct Summary {
     pub device: String,
     /// Seed of the run.
     pub seed: u32,
+    /// Processes that trained together.
+    pub ranks: usize,
+    /// Fraction of the time, since the latest start, in which the first of them talked to the others, and waited for them.
+    pub communication_share: f64,
+    /// Checksum of the policy's parameters.
+    pub parameters_hash: u32,
     /// `steps`, `time`, `success`, `interrupt` or `failure`.
     pub stopped_by: &'static str,
 }
@@ -143,6 +149,14 @@ impl RunDir {
         }
         let _ = std::fs::remove_dir(self.checkpoints());
         let _ = std::fs::remove_dir(&self.path);
+    }
+
+    /// The folder of a run that another rank writes.
+    pub fn of_first(path: &Path) -> Self {
+        RunDir {
+            path: path.to_path_buf(),
+            lock: None,
+        }
     }
 
     /// An existing run.

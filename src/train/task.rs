@@ -21,6 +21,7 @@ use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::nn::{ActorCritic, Policy};
 use crate::physics::motion_library::MotionLibrary;
+use crate::ranks::Ranks;
 use crate::rl::Algorithm;
 use crate::rl::amp::discriminator::network;
 use crate::rl::ase::FrozenLowLevel;
@@ -155,11 +156,11 @@ pub trait Task: Send + Sync {
     /// The data in a few words, to be said when a training starts.
     fn describe(&self) -> String;
 
-    /// Opens the environments of a training.
+    /// Opens a rank's share of the environments of a training.
     ///
     /// # Errors
     /// The device cannot hold them.
-    fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch>;
+    fn open(&self, device: &Device, ranks: &Ranks, envs: usize, seed: u32) -> Result<EnvBatch>;
 
     /// What learns in them.
     ///

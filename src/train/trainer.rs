@@ -11,9 +11,10 @@ use super::run_dir::{RunDir, Summary};
 use super::snapshots::{Snapshot, SnapshotMaker};
 use super::state::TrainerState;
 use super::task::Task;
-use crate::env::EnvBatch;
 use crate::env::humanoid::batch::overflow_warning;
+use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
+use crate::ranks::Ranks;
 use crate::rl::Algorithm;
 use anyhow::{Context, Result};
 use std::collections::BTreeSet;
@@ -45,12 +46,15 @@ pub struct Training<'a> {
     pub run: &'a RunDir,
     /// Where to train.
     pub device: &'a Device,
+    /// Who else trains. All begin with the same choices, data and checkpoints; the first writes the run's folder.
+    pub ranks: &'a Ranks,
     /// What a new run begins with, if not from nothing: a checkpoint of another.
     pub start: Option<&'a Checkpoint>,
 }
 
 /// Trains until a limit, the wanted success or `interrupted`; with `from`, goes on where that checkpoint
-/// of the run was taken. Ends by writing a checkpoint, figures and `summary.json`.
+/// of the run was taken. Ends by writing a checkpoint, figures and `summary.json`; the summary that ranks but the first
+/// return has no evaluation.
 ///
 /// # Errors
 /// The networks or the checkpoint do not fit, and nothing was written; or a file cannot be written, the
@@ -65,18 +69,37 @@ pub fn train(
     // On a thread of the pool: another would fall asleep and be woken again at every parallel part.
     rayon::scope(|_| {
         let opened = Loop::open(training, from, observer);
-        let mut state = opened.inspect_err(|_| training.run.discard())?;
+        let mut state = opened.inspect_err(|_| {
+            if training.ranks.is_first() {
+                training.run.discard();
+            }
+        })?;
         observer.opened(&mut state.envs)?;
         let stopped_by = state.advance(interrupted, observer);
         let outcome = stopped_by.and_then(|by| {
             state.save_last()?;
-            if let Some(warning) = overflow_warning(state.envs.contact_overflow()?) {
+            let mut overflow = [state.envs.contact_overflow()? as f32];
+            training.ranks.sum(&mut overflow);
+            if let Some(warning) = overflow_warning(overflow[0] as u64) {
                 observer.noted(&warning);
             }
             Ok(by)
         });
         state.conclude(outcome)
     })
+}
+
+/// The updates of a run up to a number of steps.
+fn known_rows(run: &RunDir, steps: u64, observer: &mut dyn Observer) -> Result<Vec<UpdateMetrics>> {
+    let path = run.metrics_path();
+    let known = metrics::read(&path, steps)?;
+    for line in known.damaged {
+        observer.noted(&format!(
+            "note: {}, line {line}, was no update: left out",
+            path.display()
+        ));
+    }
+    Ok(known.rows)
 }
 
 /// A training under way.
@@ -86,8 +109,9 @@ struct Loop<'a> {
     learner: Box<dyn Algorithm>,
     state: TrainerState,
     rows: Vec<UpdateMetrics>,
-    writer: MetricsWriter,
-    /// Until a picture cannot be made.
+    /// Of the first rank.
+    writer: Option<MetricsWriter>,
+    /// Of the first rank, until a picture cannot be made.
     #[cfg(feature = "report")]
     snapshots: Option<SnapshotMaker<'a>>,
     /// Environment steps so far.
@@ -110,9 +134,10 @@ impl<'a> Loop<'a> {
             task,
             run,
             device,
+            ranks,
             start,
         } = training;
-        let mut envs = task.open(device, config.ppo.envs, config.seed)?;
+        let mut envs = task.open(device, ranks, config.ppo.envs, config.seed)?;
         let mut learner = task.learner(config, &envs, device)?;
         let (mut steps, mut earlier_s, mut state) = (0, 0.0, TrainerState::default());
         let mut rows = Vec::new();
@@ -122,26 +147,32 @@ impl<'a> Loop<'a> {
         }
         if let Some(checkpoint) = from {
             steps = checkpoint.header.steps;
-            state = checkpoint.restore(&mut *learner, &mut envs)?;
-            let path = run.metrics_path();
-            let known = metrics::read(&path, steps)?;
-            for line in known.damaged {
-                observer.noted(&format!(
-                    "note: {}, line {line}, was no update: left out",
-                    path.display()
-                ));
+            let restored = checkpoint.restore(&mut *learner, &mut envs)?;
+            state = restored.state;
+            if !restored.envs {
+                observer.noted(
+                    "note: the environments were shared out otherwise: all of them begin new episodes",
+                );
             }
-            earlier_s = known.rows.last().map_or(0.0, |row| row.wall_s);
-            rows = known.rows;
+            if ranks.is_first() {
+                rows = known_rows(run, steps, observer)?;
+            }
+            earlier_s = rows.last().map_or(0.0, |row| row.wall_s);
         }
+        let writer = ranks
+            .is_first()
+            .then(|| MetricsWriter::open(run, &rows))
+            .transpose()?;
         let mut opened = Loop {
             training,
             envs,
             learner,
             state,
-            writer: MetricsWriter::open(run, &rows)?,
+            writer,
             #[cfg(feature = "report")]
-            snapshots: Some(SnapshotMaker::new(run, task, config.film_share)),
+            snapshots: ranks
+                .is_first()
+                .then(|| SnapshotMaker::new(run, task, config.film_share)),
             rows,
             steps,
             earlier_s,
@@ -152,7 +183,9 @@ impl<'a> Loop<'a> {
         if fresh {
             opened.save_last()?;
         }
-        run.write_config(config)?;
+        if ranks.is_first() {
+            run.write_config(config)?;
+        }
         Ok(opened)
     }
 
@@ -166,17 +199,17 @@ impl<'a> Loop<'a> {
         interrupted: &AtomicBool,
         observer: &mut dyn Observer,
     ) -> Result<&'static str> {
-        let config = self.training.config;
+        let Training { config, ranks, .. } = self.training;
         loop {
             if self.steps >= config.steps {
                 return Ok("steps");
             }
             // As whoever resumes the run will see it.
             let wall_s = self.rows.last().map_or(0.0, |row| row.wall_s);
-            if config.max_time_s.is_some_and(|max| wall_s >= max) {
+            if self.first_says(config.max_time_s.is_some_and(|max| wall_s >= max)) {
                 return Ok("time");
             }
-            if interrupted.load(Ordering::Relaxed) {
+            if ranks.any(interrupted.load(Ordering::Relaxed)) {
                 return Ok("interrupt");
             }
             let before = self.steps;
@@ -184,9 +217,11 @@ impl<'a> Loop<'a> {
             observer.updated(&row, self.state.means().unwrap_or_default());
             let reached =
                 self.crossed(config.evaluate_every, before) && self.succeeded(&mut row)?;
-            self.writer.write(&row)?;
-            if let Some(note) = self.writer.take_note() {
-                observer.noted(&note);
+            if let Some(writer) = &mut self.writer {
+                writer.write(&row)?;
+                if let Some(note) = writer.take_note() {
+                    observer.noted(&note);
+                }
             }
             self.rows.push(row);
             self.keep(before, observer)?;
@@ -196,6 +231,12 @@ impl<'a> Loop<'a> {
         }
     }
 
+    /// What the first rank says, where others may see it otherwise: clocks differ.
+    fn first_says(&self, own: bool) -> bool {
+        let ranks = self.training.ranks;
+        ranks.any(own && ranks.is_first())
+    }
+
     /// Whether this update passed a multiple of `every` steps.
     fn crossed(&self, every: u64, before: u64) -> bool {
         before / every != self.steps / every
@@ -203,6 +244,8 @@ impl<'a> Loop<'a> {
 
     fn update(&mut self) -> Result<UpdateMetrics> {
         let (start, batch) = (Instant::now(), self.training.config.batch());
+        let ranks = self.training.ranks;
+        let talked = ranks.seconds();
         let iteration = self.learner.iterate(&mut self.envs, self.steps)?;
         self.steps += batch;
         self.state.remember(&iteration.stats);
@@ -213,6 +256,7 @@ impl<'a> Loop<'a> {
             level: self.level(),
             levels_passed: self.levels_passed(),
             steps_per_s: batch as f64 / start.elapsed().as_secs_f64(),
+            communication_s: (!ranks.is_alone()).then(|| ranks.seconds() - talked),
             ..UpdateMetrics::new(&iteration)
         };
         self.envs.advance_curriculum(&iteration.stats);
@@ -240,7 +284,17 @@ impl<'a> Loop<'a> {
         else {
             return Ok(false);
         };
-        if recent.success < goal - NEAR || self.evaluate(GLANCE)?.success < goal - DOUBT {
+        if recent.success < goal - NEAR {
+            return Ok(false);
+        }
+        let ranks = self.training.ranks;
+        let reached = ranks.is_first() && self.judged(goal, row)?;
+        Ok(ranks.any(reached))
+    }
+
+    /// Whether the policy reaches a success.
+    fn judged(&self, goal: f64, row: &mut UpdateMetrics) -> Result<bool> {
+        if self.evaluate(GLANCE)?.success < goal - DOUBT {
             return Ok(false);
         }
         let found = self.evaluate(EPISODES)?;
@@ -275,8 +329,8 @@ impl<'a> Loop<'a> {
         for &steps in &kept {
             self.save(&run.checkpoint_at(steps))?;
         }
-        let due = !kept.is_empty() || self.saved.elapsed() >= SAVE_EVERY;
-        if due || self.rows.len() == 1 {
+        let due = self.first_says(self.saved.elapsed() >= SAVE_EVERY);
+        if due || !kept.is_empty() || before == 0 {
             self.save_last()?;
         }
         kept.last()
@@ -290,7 +344,7 @@ impl<'a> Loop<'a> {
             return Ok(());
         };
         match snapshots.take(&self.learner.policy()?, steps, observer) {
-            Ok(made) => self.writer.add(&made),
+            Ok(made) => self.writer.iter_mut().for_each(|writer| writer.add(&made)),
             Err(error) => {
                 observer.noted(&format!(
                     "note: {error:#}; the training goes on without pictures"
@@ -312,18 +366,30 @@ impl<'a> Loop<'a> {
         self.save(&self.training.run.checkpoint("last"))
     }
 
+    /// Lets the first rank write a checkpoint of all.
     fn save(&self, path: &Path) -> Result<()> {
-        let Training { config, task, .. } = self.training;
+        let Training {
+            config,
+            task,
+            ranks,
+            ..
+        } = self.training;
         let header = Header {
             version: VERSION.to_string(),
             task: config.task.name.clone(),
-            spec: self.envs.spec(),
+            spec: EnvSpec {
+                envs: config.ppo.envs,
+                ..self.envs.spec()
+            },
             fingerprint: task.fingerprint(),
             config: config.to_toml(),
             steps: self.steps,
         };
         let checkpoint = Checkpoint::take(header, &*self.learner, &self.envs, &self.state)?;
-        Ok(checkpoint.save(path)?)
+        if ranks.is_first() {
+            checkpoint.save(path)?;
+        }
+        Ok(())
     }
 
     /// Final evaluation, summary and figures. After a failure only the summary is written.
@@ -332,6 +398,7 @@ impl<'a> Loop<'a> {
             config,
             run,
             device,
+            ranks,
             ..
         } = self.training;
         let wall_s = self.wall_s();
@@ -345,9 +412,16 @@ impl<'a> Loop<'a> {
             levels_passed: self.levels_passed(),
             device: device.name(),
             seed: config.seed,
+            ranks: ranks.count(),
+            communication_share: ranks.seconds() / self.start.elapsed().as_secs_f64().max(1e-9),
+            parameters_hash: self.learner.policy().map_or(0, |policy| policy.hash()),
             stopped_by: "failure",
         };
         match outcome {
+            Ok(by) if !ranks.is_first() => {
+                summary.stopped_by = by;
+                Ok(summary)
+            }
             Ok(by) => {
                 summary.stopped_by = by;
                 summary.evaluation = self.evaluate(EPISODES)?;
@@ -357,12 +431,15 @@ impl<'a> Loop<'a> {
                 Ok(summary)
             }
             Err(error) => {
-                run.write_summary(&summary)
-                    .context(format!("{error:#}; then"))?;
+                if ranks.is_first() {
+                    run.write_summary(&summary)
+                        .context(format!("{error:#}; then"))?;
+                }
                 Err(error)
             }
         }
     }
+
     /// Draws the figures of the run, and adds them to what TensorBoard shows.
     #[cfg(feature = "report")]
     fn figures(mut self) -> Result<()> {
@@ -376,7 +453,10 @@ impl<'a> Loop<'a> {
             path,
         };
         let files = task.figures(run, &self.rows)?.into_iter();
-        self.writer.add(&files.map(figure).collect::<Vec<_>>());
+        let pictures: Vec<Snapshot> = files.map(figure).collect();
+        self.writer
+            .iter_mut()
+            .for_each(|writer| writer.add(&pictures));
         Ok(())
     }
 }

@@ -54,12 +54,13 @@ pub struct GpuLocomotion {
 }
 
 impl GpuLocomotion {
-    /// Environments at the start of an episode; the limits of their first episodes are up to
-    /// `initial_age_jitter` steps early.
+    /// Environments at the start of an episode, the first of which has the number `first` in the whole batch; the limits
+    /// of their first episodes are up to `initial_age_jitter` steps early.
     pub fn new(
         gpu: &Gpu,
         matcher: &MotionMatcher,
         config: &EnvConfig,
+        first: usize,
         initial_age_jitter: u32,
     ) -> Self {
         let (envs, database) = (config.envs, &matcher.database);
@@ -67,7 +68,7 @@ impl GpuLocomotion {
         let count = config.task.obstacles().max(1);
         let batch = GpuLocomotion {
             spec: config.spec(),
-            params: KernelParams::new(config, 0, database.candidates.len()),
+            params: KernelParams::new(config, first, database.candidates.len()),
             frames: database.frames(),
             candidates: Buffer::from_slice(gpu, &database.candidates),
             features: Buffer::from_slice(gpu, database.features.as_flattened()),

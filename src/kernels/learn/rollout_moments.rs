@@ -84,25 +84,67 @@ pub fn twin(
     scale: &mut [f32],
     params: &Params,
 ) {
+    let columns = [log_prob_and_value, advantage_and_return];
+    over_ranks(columns, group, moments, scale, params, |_| {});
+}
+
+/// [`twin`] over the samples of all ranks, whose sums `together` adds up. `params.samples` are this rank's.
+pub fn over_ranks(
+    [log_prob_and_value, advantage_and_return]: [&[f32]; 2],
+    group: &[u32],
+    moments: &mut [f32],
+    scale: &mut [f32],
+    params: &Params,
+    mut together: impl FnMut(&mut [f64]),
+) {
     let samples = params.samples as usize;
     let (of, stream) = (params.streams as usize, params.stream as usize);
     let value = &log_prob_and_value[samples..];
     let (advantage, target) = advantage_and_return.split_at(samples * of);
     let moments = &mut moments[2 * stream..][..2];
     let scale = &mut scale[scale::FIELDS * stream..][..scale::FIELDS];
-    let mean = |of: &dyn Fn(usize) -> f64| (0..samples).map(of).sum::<f64>() / samples as f64;
-    let variance = |of: &dyn Fn(usize) -> f64| {
-        let center = mean(of);
-        mean(&|i| (of(i) - center).powi(2))
-    };
     let target = |i: usize| f64::from(target[i * of + stream]);
     let (old_mean, old_std) = (scale[scale::OLD_MEAN], scale[scale::OLD_STD]);
     let error = |i: usize| target(i) - f64::from(value[i * of + stream] * old_std + old_mean);
-    scale[scale::EXPLAINED_VARIANCE] =
-        (1.0 - variance(&error) / (variance(&target) + 1e-12)) as f32;
+    let advantage = |i: usize| f64::from(advantage[i * of + stream]);
+    let is_of = |i: usize, kind: usize| group[i] as usize == kind;
+    let sum = |of: &dyn Fn(usize) -> f64| (0..samples).map(of).sum::<f64>();
+    let sum_of = |kind: usize, of: &dyn Fn(usize) -> f64| -> f64 {
+        let own = (0..samples).filter(|&i| is_of(i, kind));
+        own.map(of).sum()
+    };
+
+    let mut sums = [0.0; 5 + 2 * GROUPS];
+    sums[..5].copy_from_slice(&[
+        samples as f64,
+        sum(&target),
+        sum(&|i| target(i).powi(2)),
+        sum(&error),
+        sum(&advantage),
+    ]);
+    for kind in 0..GROUPS {
+        sums[5 + kind] = sum_of(kind, &|_| 1.0);
+        sums[5 + GROUPS + kind] = sum_of(kind, &advantage);
+    }
+    together(&mut sums);
+    let [mean_target, mean_square, mean_error, mean_advantage] =
+        [1, 2, 3, 4].map(|at| sums[at] / sums[0]);
+    let count = |kind: usize| sums[5 + kind].max(1.0);
+    let mean = |kind: usize| sums[5 + GROUPS + kind] / count(kind);
+
+    let mut squares = [0.0; 3 + GROUPS];
+    squares[0] = sum(&|i| (error(i) - mean_error).powi(2));
+    squares[1] = sum(&|i| (target(i) - mean_target).powi(2));
+    squares[2] = sum(&|i| (advantage(i) - mean_advantage).powi(2));
+    for kind in 0..GROUPS {
+        squares[3 + kind] = sum_of(kind, &|i| (advantage(i) - mean(kind)).powi(2));
+    }
+    together(&mut squares);
+    let variance = |at: usize| squares[at] / sums[0];
+    scale[scale::EXPLAINED_VARIANCE] = (1.0 - variance(0) / (variance(1) + 1e-12)) as f32;
 
     let weight = f64::from(params.weight);
-    let newest = [mean(&target), mean(&|i| target(i).powi(2))];
+    let newest = [mean_target, mean_square];
     for (moment, newest) in moments.iter_mut().zip(newest) {
         *moment = (f64::from(*moment) * (1.0 - weight) + newest * weight) as f32;
     }
@@ -111,17 +153,10 @@ pub fn twin(
     scale[scale::NEW_MEAN] = moments[0];
     scale[scale::NEW_STD] = spread.sqrt() as f32;
 
-    let advantage = |i: usize| f64::from(advantage[i * of + stream]);
-    let least = LEAST_OF_ALL * variance(&advantage).sqrt();
+    let least = LEAST_OF_ALL * variance(2).sqrt();
     for kind in 0..GROUPS {
-        let own: Vec<f64> = (0..samples)
-            .filter(|&i| group[i] as usize == kind)
-            .map(advantage)
-            .collect();
-        let count = own.len().max(1) as f64;
-        let mean = own.iter().sum::<f64>() / count;
-        let variance = own.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / count;
-        scale[scale::ADVANTAGE_MEAN + kind] = mean as f32;
-        scale[scale::ADVANTAGE_STD + kind] = variance.sqrt().max(least) as f32;
+        let spread = (squares[3 + kind] / count(kind)).sqrt();
+        scale[scale::ADVANTAGE_MEAN + kind] = mean(kind) as f32;
+        scale[scale::ADVANTAGE_STD + kind] = spread.max(least) as f32;
     }
 }

@@ -77,9 +77,9 @@ pub fn add_sum(gpu: &Gpu, values: &Array, to: &mut Array) {
     write(gpu, sum, to, 0);
 }
 
-/// See [`crate::nn::rows::decay`].
-pub fn decay(gpu: &Gpu, parameters: &Array, range: Range<usize>, rate: f32, gradient: &mut Array) {
+/// See [`crate::nn::rows::add_scaled`].
+pub fn add_scaled(gpu: &Gpu, values: &Array, range: Range<usize>, factor: f32, to: &mut Array) {
     let part = |values: &Array| all(gpu, values).slice([range.clone()]);
-    let sum = part(gradient).add(part(parameters).mul_scalar(rate));
-    write(gpu, sum, gradient, range.start);
+    let sum = part(to).add(part(values).mul_scalar(factor));
+    write(gpu, sum, to, range.start);
 }

@@ -13,6 +13,7 @@ use crate::nn::layer::Activation;
 use crate::nn::network::{Network, NetworkConfig};
 use crate::nn::observation::ObservationSpec;
 use crate::nn::{Adam, Engine, EngineSize, Rows, RunningMeanStd, rows};
+use crate::ranks::Ranks;
 use crate::rl::rollout::Rollout;
 use anyhow::Result;
 use std::sync::Arc;
@@ -25,6 +26,7 @@ pub struct Discriminator {
     config: Amp,
     latents: LatentUse,
     device: Device,
+    ranks: Ranks,
     demonstrations: Arc<Demonstrations>,
     /// `[n][dim]`
     recorded: Array,
@@ -50,7 +52,7 @@ pub struct Discriminator {
 }
 
 impl Discriminator {
-    /// A discriminator that is new to agents of `samples` samples an update. Where it is shown latents, the
+    /// A discriminator that is new to agents of `samples` samples an update on each rank. Where it is shown latents, the
     /// demonstrations' windows end with them.
     ///
     /// # Errors
@@ -60,11 +62,17 @@ impl Discriminator {
         latents: LatentUse,
         demonstrations: &Arc<Demonstrations>,
         device: &Device,
+        ranks: &Ranks,
         samples: usize,
         seed: u32,
     ) -> Result<Self> {
+        let config = Amp {
+            minibatch_size: ranks.portion(config.minibatch_size),
+            replay_per_update: ranks.portion(config.replay_per_update),
+            ..config.clone()
+        };
         let dim = demonstrations.dim;
-        let network = network(config, dim, latents)?;
+        let network = network(&config, dim, latents)?;
         let parameters = network.span().len();
         let size = EngineSize {
             parameters,
@@ -88,8 +96,9 @@ impl Discriminator {
             steps: AdaptiveSteps::new(config.steps),
             updates: 0,
             seed,
-            config: config.clone(),
+            config,
             latents,
+            ranks: ranks.clone(),
             device: device.clone(),
             demonstrations: demonstrations.clone(),
             network,
@@ -197,61 +206,68 @@ impl Discriminator {
     }
 
     /// Learns from the windows that [`Discriminator::reward`] saw last.
-    pub fn learn(&mut self) {
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn learn(&mut self) -> Result<()> {
         let dim = self.dim();
         let fresh = self.fresh.len() / dim;
         if self.updates == 0 {
-            self.normalize_by(fresh);
+            self.normalize_by(fresh)?;
         }
         if self.replay.len() == 0 {
-            self.keep(fresh);
+            self.keep(fresh)?;
         }
         self.sums = Array::zeroed(&self.device, SUMS);
         self.penalties = Array::zeroed(&self.device, 1);
         for step in 0..self.steps.count() {
-            self.step(step);
+            self.step(step)?;
         }
         if self.updates > 0 {
-            self.normalize_by(fresh);
-            self.keep(fresh);
+            self.normalize_by(fresh)?;
+            self.keep(fresh)?;
         }
         self.updates += 1;
+        Ok(())
     }
 
-    /// Numbers below `below` for a stream of the present update.
+    /// This rank's `count` numbers of a stream of the present update.
     fn draw(&self, stream: u32, count: usize, of: impl Fn(u32) -> u32) -> Vec<u32> {
-        let numbers = 0..count as u32;
+        let first = (self.ranks.rank().number * count) as u32;
+        let numbers = first..first + count as u32;
         let bits = |number| random4(self.seed, number, self.updates as u32, STREAM + stream)[0];
         numbers.map(|number| of(bits(number))).collect()
     }
 
     /// Lets windows of both sides into the normaliser.
-    fn normalize_by(&mut self, fresh: usize) {
+    fn normalize_by(&mut self, fresh: usize) -> Result<()> {
         let count = fresh.min(self.config.replay_per_update);
         let recorded = self.draw(0, count, |bits| self.demonstrations.draw(bits));
         let agents = self.draw(1, count, |bits| index_below(bits, fresh as u32));
         let dim = self.dim();
         for (from, numbers) in [(&self.recorded, recorded), (&self.fresh, agents)] {
             let picked = rows::pick(&self.device, from, dim, &numbers);
-            self.normalizer.update(&picked, count);
+            self.normalizer.update_over(&self.ranks, &picked, count)?;
         }
+        Ok(())
     }
 
-    /// Puts some of the fresh windows into the replay.
-    fn keep(&mut self, fresh: usize) {
+    /// Puts some of the fresh windows into the replay, which holds those of all ranks.
+    fn keep(&mut self, fresh: usize) -> Result<()> {
         let count = self.config.replay_per_update.min(fresh);
-        let count = count.min(self.config.replay_capacity);
+        let count = count.min(self.config.replay_capacity / self.ranks.count());
         let kept = self.draw(2, count, |bits| index_below(bits, fresh as u32));
         let kept = rows::pick(&self.device, &self.fresh, self.dim(), &kept);
-        self.replay.push(&kept);
+        self.replay.push(&self.ranks.join(&self.device, &kept)?);
+        Ok(())
     }
 
-    /// One gradient step.
-    fn step(&mut self, step: usize) {
+    /// One gradient step, on this rank's share of the samples.
+    fn step(&mut self, step: usize) -> Result<()> {
         let (count, dim) = (self.config.minibatch_size, self.dim());
         let stream = 3 + 3 * step as u32;
         let (fresh, replayed) = (self.fresh.len() / dim, self.replay.len());
-        let half = count / 2;
+        let (half, ranks) = (count / 2, self.ranks.count());
         let numbers = [
             self.draw(stream, count, |bits| self.demonstrations.draw(bits)),
             self.draw(stream + 1, count - half, |bits| {
@@ -287,8 +303,8 @@ impl Discriminator {
             window: dim,
             heads: self.config.heads,
             latent,
-            inv_count: 0.5 / count as f32,
-            inv_latents: 1.0 / (count - half) as f32,
+            inv_count: 0.5 / (count * ranks) as f32,
+            inv_latents: 1.0 / ((count - half) * ranks) as f32,
         };
         self.engine.gradient(
             &self.parameters,
@@ -306,12 +322,14 @@ impl Discriminator {
             width,
             0..count,
             self.config.heads,
-            self.config.gradient_penalty,
+            self.config.gradient_penalty / ranks as f32,
             &mut self.gradient,
             &mut self.penalties,
         );
+        self.ranks
+            .sum_arrays(&self.device, &mut [&mut self.gradient])?;
         let last = self.network.layers().last().map(|last| last.weights());
-        rows::decay(
+        rows::add_scaled(
             &self.device,
             &self.parameters,
             last.unwrap_or_default(),
@@ -321,6 +339,7 @@ impl Discriminator {
         let (rate, max) = (self.config.learning_rate, self.config.max_grad_norm);
         self.adam
             .step(&mut self.parameters, &self.gradient, rate, max);
+        Ok(())
     }
 
     /// The latents of a step's samples, `[samples][latent]`: those of fresh windows by their numbers, which
@@ -341,6 +360,8 @@ impl Discriminator {
     /// # Errors
     /// The device was lost.
     pub fn conclude(&mut self, style: f64) -> Result<Vec<(&'static str, f64)>> {
+        let all = &mut [&mut self.sums, &mut self.penalties, &mut self.skill];
+        self.ranks.sum_arrays(&self.device, all)?;
         let sums = self.sums.read(&self.device)?;
         let penalties = self.penalties.read(&self.device)?[0];
         let of = |i: usize| f64::from(sums[i]);
@@ -356,7 +377,7 @@ impl Discriminator {
             ("agent_accuracy", agents),
         ];
         if self.latents.found() > 0 {
-            let samples = (self.fresh.len() / self.dim()).max(1);
+            let samples = self.ranks.count() * (self.fresh.len() / self.dim()).max(1);
             let skill = f64::from(self.skill.read(&self.device)?[0]) / samples as f64;
             // Of the agents' windows of a step, the fresh ones have a latent.
             let count = self.config.minibatch_size;

@@ -54,7 +54,15 @@ impl AmpLearner {
         let learner = PpoLearner::with_rewards(ppo, envs, device, seed, &rewards)?;
         Ok(AmpLearner {
             ppo: learner.with_diversity(diversity),
-            discriminator: Discriminator::new(amp, latents, demonstrations, device, samples, seed)?,
+            discriminator: Discriminator::new(
+                amp,
+                latents,
+                demonstrations,
+                device,
+                &envs.ranks,
+                samples,
+                seed,
+            )?,
         })
     }
 
@@ -72,8 +80,8 @@ impl Algorithm for AmpLearner {
         self.discriminator.reward(&mut self.ppo.rollouts);
         self.ppo.estimate()?;
         let policy_s = begin.elapsed().as_secs_f64() - env_s;
-        self.ppo.learn();
-        self.discriminator.learn();
+        self.ppo.learn()?;
+        self.discriminator.learn()?;
         let mut iteration = self.ppo.conclude(envs, steps, begin, [policy_s, env_s])?;
         let style = iteration.loss("style_reward").unwrap_or(0.0);
         iteration.losses.extend(self.discriminator.conclude(style)?);

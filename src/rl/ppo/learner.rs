@@ -11,6 +11,7 @@ use crate::kernels::learn::rollout_moments::scale;
 use crate::kernels::learn::{adapt_lr, sample_action};
 use crate::kernels::rng::{index_below, permutation, random4};
 use crate::nn::{ActorCritic, Adam, Engine, Policy, RunningMeanStd, rows};
+use crate::ranks::Ranks;
 use crate::rl::gae::{Bootstrap, RewardSource, gae};
 use crate::rl::rollout::Rollout;
 use crate::rl::sample_action::sample_action;
@@ -43,6 +44,7 @@ const KL: usize = 3;
 pub struct PpoLearner {
     config: Ppo,
     device: Device,
+    ranks: Ranks,
     spec: EnvSpec,
     networks: ActorCritic,
     engine: Engine,
@@ -112,6 +114,11 @@ impl PpoLearner {
         let values = sources.len();
         let networks = ActorCritic::new(&config.network, &spec.observation, spec.action, values)?;
         let parameters = networks.parameters();
+        let ranks = &envs.ranks;
+        let config = &Ppo {
+            minibatch_size: ranks.portion(config.minibatch_size),
+            ..config.clone()
+        };
         let samples = config.rollout_length * spec.rows();
         let engine = Engine::new(
             device,
@@ -127,7 +134,7 @@ impl PpoLearner {
             parameters: Array::from_slice(device, &initial),
             log_std: Array::zeroed(device, spec.action),
             adam: adam(config, &networks, device),
-            value_normalizer: ValueNormalizer::new(device, &weights),
+            value_normalizer: ValueNormalizer::new(device, ranks, &weights),
             observation_normalizer: config.normalize_observations.then(normalizer),
             task_weight: sources
                 .contains(&RewardSource::Style)
@@ -145,6 +152,7 @@ impl PpoLearner {
             seed,
             config: config.clone(),
             device: device.clone(),
+            ranks: ranks.clone(),
             spec: *spec,
             networks,
             engine,
@@ -184,7 +192,7 @@ impl PpoLearner {
         let mut rollouts = std::mem::take(&mut self.rollouts);
         let firsts: Vec<usize> = rollouts
             .iter()
-            .scan(0, |next, part| {
+            .scan(envs.first_row(), |next, part| {
                 let first = *next;
                 *next += part.spec.rows();
                 Some(first)
@@ -210,7 +218,7 @@ impl PpoLearner {
         let normalizer = self.observation_normalizer.clone();
         if let Some(running) = &mut self.observation_normalizer {
             for rollout in &rollouts {
-                running.update(&rollout.observation, rollout.samples());
+                running.update_over(&self.ranks, &rollout.observation, rollout.samples())?;
             }
         }
         if self.diversity.width(self.spec.action) > 0 {
@@ -224,7 +232,7 @@ impl PpoLearner {
         self.device.sync()
     }
 
-    /// Plays a rollout of a part, whose first row has the number `first` in the batch.
+    /// Plays a rollout of a part, whose first row has the number `first` among those of all ranks.
     fn play(&self, env: &mut dyn VecEnv, rollout: &mut Rollout, first: usize) -> Result<[f64; 2]> {
         let (rows, action) = (rollout.spec.rows(), self.spec.action);
         let begin = Instant::now();
@@ -335,8 +343,11 @@ impl PpoLearner {
     }
 
     /// Takes gradient steps on the rollouts. The sums of the last epoch stay on the device.
-    pub(in crate::rl) fn learn(&mut self) {
-        self.value_normalizer.update(&self.rollouts);
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(in crate::rl) fn learn(&mut self) -> Result<()> {
+        self.value_normalizer.update(&self.rollouts)?;
         let mut rollouts = std::mem::take(&mut self.rollouts);
         self.value_normalizer.normalize_advantages(&mut rollouts);
         let device = self.device.clone();
@@ -354,11 +365,12 @@ impl PpoLearner {
             self.sums = Array::zeroed(&device, SUMS);
             for start in (0..samples).step_by(self.config.minibatch_size) {
                 let end = samples.min(start + self.config.minibatch_size);
-                self.step(&batch, start..end);
+                self.step(&batch, start..end)?;
             }
         }
         self.updates += 1;
         self.rollouts = rollouts;
+        Ok(())
     }
 
     /// The last numbers of a rollout's observations, `[samples][latent]`.
@@ -405,8 +417,9 @@ impl PpoLearner {
         rows::beside(device, &columns)
     }
 
-    /// One gradient step on a minibatch.
-    fn step(&mut self, batch: &Batch, samples: Range<usize>) {
+    /// One gradient step on a minibatch, of which this rank has so many samples.
+    fn step(&mut self, batch: &Batch, samples: Range<usize>) -> Result<()> {
+        let inv_count = 1.0 / (samples.len() * self.ranks.count()) as f32;
         let objective = PpoLoss {
             action: self.spec.action,
             values: self.sources.len(),
@@ -414,9 +427,14 @@ impl PpoLearner {
             old_log_std: &self.log_std,
             diversity: self.diversity,
             coefficients: LossCoefficients {
-                inv_count: 1.0 / samples.len() as f32,
+                inv_count,
                 ..LossCoefficients::new(&self.config, self.kl_coefficient)
             },
+        };
+        let mut sums = match self.ranks.is_alone() {
+            true => self.sums.clone(),
+            // What other ranks have added has been added here, too.
+            false => Array::zeroed(&self.device, SUMS),
         };
         self.engine.gradient(
             &self.parameters,
@@ -425,15 +443,23 @@ impl PpoLearner {
             batch.minibatch(samples.clone()),
             &objective,
             &mut self.gradient,
-            &mut self.sums,
+            &mut sums,
         );
+        match self.ranks.is_alone() {
+            true => self.sums = sums,
+            false => {
+                let arrays = &mut [&mut self.gradient, &mut sums];
+                self.ranks.sum_arrays(&self.device, arrays)?;
+                rows::add_scaled(&self.device, &sums, 0..SUMS, 1.0, &mut self.sums);
+            }
+        }
         if self.updates < self.actor_from {
             self.keep_actor();
         } else if self.config.adapt_each_minibatch {
             let rate = |rate: f64| (rate / self.learning_rate) as f32;
             let params = adapt_lr::Params {
                 kl_at: KL as u32,
-                inv_count: 1.0 / samples.len() as f32,
+                inv_count,
                 first: u32::from(samples.start == 0),
                 desired_kl: self.config.desired_kl as f32,
                 least: rate(MINIBATCH_LR_RANGE[0]),
@@ -447,6 +473,7 @@ impl PpoLearner {
             self.learning_rate,
             self.config.max_grad_norm,
         );
+        Ok(())
     }
 
     /// Takes from the gradient what would change the actor.
@@ -519,7 +546,14 @@ impl PpoLearner {
         for rollout in &self.rollouts {
             rows::add_sum(&self.device, &rollout.style_reward, &mut style);
         }
+        self.ranks.sum_arrays(&self.device, &mut [&mut style])?;
         rows::join(&self.device, &[&self.sums, &style]).read(&self.device)
+    }
+
+    /// Samples of the rollouts of all ranks.
+    fn samples(&self) -> usize {
+        let own: usize = self.rollouts.iter().map(Rollout::samples).sum();
+        own * self.ranks.count()
     }
 
     /// Means over the last epoch, and what else is worth a curve.
@@ -527,7 +561,7 @@ impl PpoLearner {
     /// # Errors
     /// The device was lost; or a number is not finite.
     fn losses(&mut self) -> Result<Vec<(&'static str, f64)>> {
-        let samples: usize = self.rollouts.iter().map(Rollout::samples).sum();
+        let samples = self.samples();
         let sums = self.read_sums()?;
         let grad_norm = self.adam.grad_norm()?;
         let scale = self.value_normalizer.advance()?;
@@ -576,6 +610,7 @@ impl PpoLearner {
         let names = envs.stat_names();
         let mut sums = Array::zeroed(&self.device, names.len());
         envs.stats(&mut sums);
+        self.ranks.sum_arrays(&self.device, &mut [&mut sums])?;
         let stats = Stats::new(names, &sums.read(&self.device)?);
         if let Some((name, sum)) = stats.iter().find(|(_, sum)| !sum.is_finite()) {
             bail!(
@@ -583,7 +618,6 @@ impl PpoLearner {
                 self.updates
             );
         }
-        let samples: usize = self.rollouts.iter().map(Rollout::samples).sum();
         let iteration = Iteration {
             losses,
             stats,
@@ -592,7 +626,7 @@ impl PpoLearner {
             learn_s: begin.elapsed().as_secs_f64() - policy_s - env_s,
         };
         let kl = iteration.loss("kl").unwrap_or(0.0);
-        self.adapt(kl, steps + samples as u64);
+        self.adapt(kl, steps + self.samples() as u64);
         self.weigh(iteration.loss("style_reward"));
         Ok(iteration)
     }
@@ -604,7 +638,7 @@ impl Algorithm for PpoLearner {
         let [_, env_s] = self.collect(envs)?;
         self.estimate()?;
         let policy_s = begin.elapsed().as_secs_f64() - env_s;
-        self.learn();
+        self.learn()?;
         self.conclude(envs, steps, begin, [policy_s, env_s])
     }
 

@@ -5,6 +5,7 @@ use super::{Opponent, SelfPlay, SelfPlayEnv};
 use crate::container::{Section, SectionError};
 use crate::env::EnvBatch;
 use crate::nn::Policy;
+use crate::ranks::Ranks;
 use crate::rl::{Algorithm, Iteration};
 use anyhow::{Result, bail};
 use std::any::Any;
@@ -55,6 +56,29 @@ impl SelfPlayLearner {
         &self.pool
     }
 
+    /// The bouts of all ranks against each of the opponents.
+    fn together(&self, ranks: &Ranks, own: &[BoutResults]) -> Vec<BoutResults> {
+        let members = self.pool.members();
+        let sum = |of: fn(&BoutResults) -> f32| {
+            members.iter().map(move |member| {
+                let own = own.iter().filter(|result| result.opponent == member.id);
+                own.map(of).sum::<f32>()
+            })
+        };
+        let games = sum(|result| result.games as f32);
+        let wins = sum(|result| result.wins as f32);
+        let mut sums: Vec<f32> = games.chain(wins).collect();
+        ranks.sum(&mut sums);
+        let (games, wins) = sums.split_at(members.len());
+        let sums = members.iter().zip(games.iter().zip(wins));
+        sums.map(|(member, (&games, &wins))| BoutResults {
+            opponent: member.id,
+            games: games as u32,
+            wins: wins.into(),
+        })
+        .collect()
+    }
+
     /// What there is to tell of an update, besides what the learner inside tells.
     fn metrics(&self, iteration: &Iteration) -> Vec<(&'static str, f64)> {
         let steps = iteration.stats.sum("steps");
@@ -84,7 +108,7 @@ impl Algorithm for SelfPlayLearner {
         let mut iteration = self.inner.iterate(envs, steps)?;
         let results: Result<Vec<Vec<BoutResults>>> =
             fighters(envs).map(SelfPlayEnv::take_results).collect();
-        let results = results?.concat();
+        let results = self.together(&envs.ranks, &results?.concat());
         self.pool.end_update(self.rollout_length, &results);
         iteration.losses.extend(self.metrics(&iteration));
         if self.pool.is_due() {

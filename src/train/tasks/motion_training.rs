@@ -10,6 +10,7 @@ use crate::gpu::Device;
 use crate::nn::Policy;
 use crate::physics::model::Model;
 use crate::physics::motion_library::MotionLibrary;
+use crate::ranks::Ranks;
 use crate::rl::Algorithm;
 use crate::rl::amp::SkillRewards;
 use crate::rl::ase::{
@@ -237,10 +238,10 @@ impl<T: MotionTask> Task for MotionTraining<T> {
         }
     }
 
-    fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
+    fn open(&self, device: &Device, ranks: &Ranks, envs: usize, seed: u32) -> Result<EnvBatch> {
         let task = self.task.played(&self.library, seed);
         let latents = self.task.latents(&self.library);
-        EnvBatch::open(device, envs, None, |part| {
+        EnvBatch::open(device, ranks, envs, None, |part| {
             let first = part.start;
             let body = open(device, task.clone(), part, seed)?;
             let acting: Box<dyn VecEnv> = match (&self.low_level, &latents) {

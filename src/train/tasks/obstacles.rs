@@ -6,6 +6,7 @@ use crate::env::{EnvBatch, EnvSpec};
 use crate::gpu::Device;
 use crate::motion::normalise::Weights;
 use crate::nn::Policy;
+use crate::ranks::Ranks;
 use crate::rl::ppo::Ppo;
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, table, within};
 use crate::train::eval_report::{levels, levels_json};
@@ -157,8 +158,8 @@ impl Task for ObstaclesTask {
         self.locomotion.describe()
     }
 
-    fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
-        self.locomotion.open(device, envs, seed)
+    fn open(&self, device: &Device, ranks: &Ranks, envs: usize, seed: u32) -> Result<EnvBatch> {
+        self.locomotion.open(device, ranks, envs, seed)
     }
 
     fn evaluate(&self, policy: &Policy, episodes: usize) -> Result<Evaluation> {

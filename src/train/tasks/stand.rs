@@ -10,6 +10,7 @@ use crate::nn::Policy;
 use crate::nn::layer::Activation;
 use crate::nn::network::NetworkConfig;
 use crate::physics::scenes;
+use crate::ranks::Ranks;
 use crate::rl::ppo::Ppo;
 use crate::train::body_episodes::{BodyEpisodes, EPISODES_SEED};
 use crate::train::config::{Config, ConfigError, Preset, TaskPreset, settings, table};
@@ -113,9 +114,9 @@ impl Task for StandTraining {
         "no motion".to_string()
     }
 
-    fn open(&self, device: &Device, envs: usize, seed: u32) -> Result<EnvBatch> {
+    fn open(&self, device: &Device, ranks: &Ranks, envs: usize, seed: u32) -> Result<EnvBatch> {
         let task = Arc::new(StandTask::new(&self.stand, seed));
-        EnvBatch::open(device, envs, None, |part| {
+        EnvBatch::open(device, ranks, envs, None, |part| {
             open(device, task.clone(), part, seed)
         })
     }
