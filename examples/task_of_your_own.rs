@@ -5,6 +5,7 @@
 //! `cargo run --release --no-default-features --features train --example task_of_your_own`
 
 use footwork::prelude::*;
+use footwork::ranks::Ranks;
 use rand::rngs::SmallRng;
 use rand::{RngExt, SeedableRng};
 
@@ -136,7 +137,7 @@ fn main() -> anyhow::Result<()> {
         ..Ppo::default()
     };
     // In a few parts, which the cores share.
-    let mut envs = EnvBatch::open(&Device::Cpu, ppo.envs, None, |part| {
+    let mut envs = EnvBatch::open(&Device::Cpu, &Ranks::alone(), ppo.envs, None, |part| {
         Ok(Box::new(Carts::new(part.len(), part.start as u64)))
     })?;
     let mut learner = PpoLearner::new(&ppo, &envs, &Device::Cpu, 1)?;

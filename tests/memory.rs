@@ -2,6 +2,7 @@
 //! pages are everybody's.
 
 use footwork::gpu::{Choice, Device};
+use footwork::ranks::Ranks;
 use footwork::rl::Algorithm;
 use footwork::rl::ppo::PpoLearner;
 use footwork::train::config::Preset;
@@ -25,7 +26,9 @@ fn updates_allocate_nothing_on_the_device() {
         let ppo = &mut config.ppo;
         (ppo.envs, ppo.rollout_length, ppo.minibatch_size) = (32, 8, 128);
         let task = (entry.load)(&config).expect("its data").task;
-        let mut envs = task.open(&device, config.ppo.envs, 1).expect("they fit");
+        let mut envs = task
+            .open(&device, &Ranks::alone(), config.ppo.envs, 1)
+            .expect("they fit");
         let mut learner =
             PpoLearner::new(&config.ppo, &envs, &device, 1).expect("a network that fits");
         let mut updates = |count: usize| {

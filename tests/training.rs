@@ -12,6 +12,7 @@ use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
 use footwork::motion::synthetic;
 use footwork::nn::Policy;
+use footwork::ranks::Ranks;
 use footwork::report::events::FILE_NAME;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::{Config, Preset};
@@ -79,6 +80,7 @@ impl Place {
                 false => RunDir::create(Some(&out), entry.name)?,
             },
             device: &device,
+            ranks: &Ranks::alone(),
             start: None,
         };
         let from = begun.then(|| self.last(run));

@@ -6,6 +6,7 @@ use crate::pool;
 use crate::settings::{self, Choices};
 use anyhow::{Result, bail};
 use footwork::gpu::{Choice, Device};
+use footwork::ranks::Ranks;
 use footwork::train::checkpoint::Checkpoint;
 use footwork::train::config::Config;
 use footwork::train::metrics::UpdateMetrics;
@@ -217,6 +218,7 @@ fn run(
         task: &*opened.task,
         run: &run,
         device: &Device::Cpu,
+        ranks: &Ranks::alone(),
         start: None,
     };
     let summary = trainer::train(training, from, interrupted, &mut reporter)?;

@@ -7,6 +7,7 @@ use footwork::env::humanoid::task;
 use footwork::env::locomotion::CpuLocomotion;
 use footwork::env::{EnvBatch, EnvSpec, Stats, Transition, VecEnv, termination};
 use footwork::gpu::{Array, Device};
+use footwork::ranks::Ranks;
 use footwork::rl::ase::HighLevelEnv;
 use footwork::train::config::{Config, ConfigError};
 use rayon::prelude::*;
@@ -361,8 +362,8 @@ fn envs_of(task: &str, rows: i64) -> Result<usize, ConfigError> {
 fn open(opened: &Opened, envs: usize, seed: u32) -> Result<EnvBatch> {
     let (task, device) = (&*opened.task, &Device::Cpu);
     let mut batch = match task.bouts() {
-        None => task.open(device, envs, seed)?,
-        Some(bouts) => EnvBatch::open(device, envs, None, |part| {
+        None => task.open(device, &Ranks::alone(), envs, seed)?,
+        Some(bouts) => EnvBatch::open(device, &Ranks::alone(), envs, None, |part| {
             let bodies = task::open(device, bouts.task.clone(), part, seed)?;
             Ok(match task.low_level() {
                 Some(low_level) => Box::new(HighLevelEnv::new(bodies, low_level, device)?),

@@ -61,7 +61,7 @@ impl Observer for Progress {
             .map_or(by_steps, |max| by_steps.min(max - row.wall_s))
             .max(0.0);
         let line = format!(
-            "{:>9} steps{}  success {:>5.1} %  return {:>7.1}{}  {:>7.0} steps/s  {} gone, at most {} left",
+            "{:>9} steps{}  success {:>5.1} %  return {:>7.1}{}  {:>7.0} steps/s{}  {} gone, at most {} left",
             row.steps,
             row.level
                 .map_or(String::new(), |level| format!("  level {level}")),
@@ -69,6 +69,7 @@ impl Observer for Progress {
             recent.episode_return,
             style(row),
             row.steps_per_s,
+            communication(row),
             clock(row.wall_s),
             clock(left),
         );
@@ -101,6 +102,15 @@ fn style(row: &UpdateMetrics) -> String {
     });
     let fall = percent("fall").unwrap_or(0.0);
     format!("  style {reward:.2}{weight}{recognised}  fall {fall:>3.0} %")
+}
+
+/// The share of an update's time in which ranks talk to each other, if there are several.
+fn communication(row: &UpdateMetrics) -> String {
+    let all = row.policy_s + row.env_s + row.learn_s;
+    let share = row.communication_s.map(|seconds| seconds / all.max(1e-9));
+    share.map_or(String::new(), |share| {
+        format!("  communication {:.0} %", 100.0 * share)
+    })
 }
 
 impl Drop for Progress {

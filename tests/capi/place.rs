@@ -4,6 +4,7 @@ use footwork::gpu::Device;
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
 use footwork::motion::synthetic;
+use footwork::ranks::Ranks;
 use footwork::runtime::{CharacterMotion, CharacterPolicy, Characters};
 use footwork::train::config::Preset;
 use footwork::train::run_dir::RunDir;
@@ -49,6 +50,7 @@ impl Place {
             config: &config,
             run: &RunDir::create(Some(&self.path(task)), task).expect("a run"),
             device: &Device::Cpu,
+            ranks: &Ranks::alone(),
             start: None,
         };
         let stop = AtomicBool::new(false);

@@ -212,10 +212,7 @@ fn latents_come_to_mean_ways_of_turning() {
     let draw = LatentDraw::new(&ase, &[1.0]);
     let inner = Box::new(Pendulums::new());
     let envs = LatentEnv::new(inner, &draw, &Device::Cpu, 0, 1);
-    let mut envs = EnvBatch {
-        parts: vec![Box::new(envs)],
-        curriculum: None,
-    };
+    let mut envs = EnvBatch::new(vec![Box::new(envs)], None);
     let mut learner = learner(&envs, &ase);
     let mut cosine = 0.0;
     for update in 0..500 {

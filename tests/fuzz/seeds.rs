@@ -5,6 +5,7 @@ use footwork::matching::Index;
 use footwork::motion::database::Database;
 use footwork::motion::normalise::Weights;
 use footwork::motion::synthetic;
+use footwork::ranks::Ranks;
 use footwork::train::checkpoint::{Checkpoint, Header};
 use footwork::train::config::Preset;
 use footwork::train::state::TrainerState;
@@ -141,7 +142,9 @@ pub fn checkpoint() -> Seeds {
     (config.ppo.envs, config.ppo.rollout_length) = (2, 2);
     config.ppo.network.hidden = vec![4];
     let task = (entry.load)(&config).expect("a task").task;
-    let envs = task.open(&device, 2, 1).expect("environments");
+    let envs = task
+        .open(&device, &Ranks::alone(), 2, 1)
+        .expect("environments");
     let learner = task.learner(&config, &envs, &device).expect("a learner");
     let header = Header {
         version: String::new(),

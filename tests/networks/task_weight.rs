@@ -53,10 +53,7 @@ fn still() -> EnvBatch {
         bootstrap: 0,
         bootstraps_often: false,
     };
-    EnvBatch {
-        parts: vec![Box::new(Still(spec))],
-        curriculum: None,
-    }
+    EnvBatch::new(vec![Box::new(Still(spec))], None)
 }
 
 /// A learner of both rewards, whose style is to be 0.5.

@@ -6,6 +6,7 @@ use footwork::gpu::{Array, Device};
 use footwork::kernels::rng::{gaussian, random4};
 use footwork::nn::layer::Activation;
 use footwork::nn::{NetworkConfig, Policy, RunningMeanStd};
+use footwork::ranks::Ranks;
 use footwork::rl::amp::{Amp, Discriminator};
 use footwork::rl::ase::{Ase, LowLevel};
 use footwork::train::checkpoint::{Checkpoint, Header};
@@ -105,7 +106,15 @@ fn learner(amp: &Amp, ase: &Ase, style: usize, seed: u32) -> Section {
     let dim = 2 * style + latents.shown();
     let windows = (0..dim).map(|at| noise(seed, at)).collect();
     let demonstrations = Arc::new(Demonstrations::new(dim, windows, &[1.0]));
-    let discriminator = Discriminator::new(amp, latents, &demonstrations, &Device::Cpu, 1, seed);
+    let discriminator = Discriminator::new(
+        amp,
+        latents,
+        &demonstrations,
+        &Device::Cpu,
+        &Ranks::alone(),
+        1,
+        seed,
+    );
     let (mut own, mut learner) = (Section::default(), Section::default());
     let discriminator = discriminator.expect("such a network");
     discriminator

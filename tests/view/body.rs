@@ -10,6 +10,7 @@ use footwork::env::live_view::LiveView;
 use footwork::env::{EnvBatch, Transition};
 use footwork::gpu::{Array, Device};
 use footwork::physics::scenes;
+use footwork::ranks::Ranks;
 use footwork::train::body_policy::BodyPolicy;
 use footwork::train::checkpoint::{Checkpoint, Header};
 use footwork::train::config::{Config, Preset};
@@ -40,7 +41,9 @@ pub fn untrained(config: &Config, task: &dyn Task) -> BodyPolicy {
 
 /// A checkpoint of what has learned nothing in so many steps.
 pub fn checkpoint(config: &Config, task: &dyn Task, steps: u64) -> Checkpoint {
-    let envs = task.open(&Device::Cpu, config.ppo.envs, 1).unwrap();
+    let envs = task
+        .open(&Device::Cpu, &Ranks::alone(), config.ppo.envs, 1)
+        .unwrap();
     let learner = task.learner(config, &envs, &Device::Cpu).unwrap();
     let header = Header {
         version: "test".into(),
@@ -280,7 +283,7 @@ fn step(batch: &mut EnvBatch, device: &Device) {
 /// A crowd of one must look like its only body, wherever its state is kept.
 fn one_of_a_crowd(device: Device) {
     let (_, task) = task("punch");
-    let mut batch = task.open(&device, 1, 5).unwrap();
+    let mut batch = task.open(&device, &Ranks::alone(), 1, 5).unwrap();
     let Some(LiveView::Bodies(view)) = batch.live_view().unwrap() else {
         panic!("bodies");
     };

@@ -16,6 +16,7 @@ use footwork::motion::synthetic::perform_walk;
 use footwork::nn::Policy;
 use footwork::physics::motion_library::MotionLibrary;
 use footwork::physics::scenes;
+use footwork::ranks::Ranks;
 use footwork::rl::Algorithm;
 use footwork::rl::ase::{
     FrozenLowLevel, HighLevelDriver, HighLevelEnv, LowLevel, STEPS_PER_DECISION,
@@ -383,7 +384,7 @@ fn a_frozen_low_level_stays_as_it_is() {
     let before = LOW_LEVELS[1].fingerprint();
     assert_ne!(before, LOW_LEVELS[0].fingerprint());
     let open = || {
-        EnvBatch::open(&device, 12, None, |part| {
+        EnvBatch::open(&device, &Ranks::alone(), 12, None, |part| {
             Ok(Box::new(steered(&device, part, 1.0)) as Box<dyn VecEnv>)
         })
         .unwrap()

@@ -18,6 +18,7 @@ use footwork::physics::kinematics::kinematics;
 use footwork::physics::pose::Pose;
 use footwork::physics::scenes;
 use footwork::physics::spatial::Spatial;
+use footwork::ranks::Ranks;
 use glam::{Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -147,7 +148,7 @@ fn parts_play_what_all_play() {
     let stand = short(1.0);
     let mut all = opened(&Device::Cpu, &stand, 0..envs, 7);
     let open = |range| Ok(opened(&Device::Cpu, &stand, range, 7));
-    let mut batch = EnvBatch::open(&Device::Cpu, envs, None, open).unwrap();
+    let mut batch = EnvBatch::open(&Device::Cpu, &Ranks::alone(), envs, None, open).unwrap();
     assert_eq!(batch.parts.len(), 4);
     let mut whole = Rollout::new(&Device::Cpu, envs, steps);
     let mut parts: Vec<Rollout> = batch

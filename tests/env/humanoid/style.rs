@@ -15,6 +15,7 @@ use footwork::gpu::{Array, Device};
 use footwork::motion::synthetic::{perform_boxing, perform_walk};
 use footwork::physics::motion_library::MotionLibrary;
 use footwork::physics::scenes;
+use footwork::ranks::Ranks;
 use footwork::rl::amp::{Amp, Discriminator, DiscriminatorLoss, FrozenDiscriminator, LatentUse};
 use footwork::rl::rollout::Rollout;
 use std::sync::{Arc, LazyLock};
@@ -227,11 +228,18 @@ fn a_frozen_discriminator_rewards_as_it_did() {
             ..Amp::default()
         };
         let samples = rollouts[0].samples();
-        let learning =
-            Discriminator::new(&amp, LatentUse::None, &recorded, &Device::Cpu, samples, 1);
+        let learning = Discriminator::new(
+            &amp,
+            LatentUse::None,
+            &recorded,
+            &Device::Cpu,
+            &Ranks::alone(),
+            samples,
+            1,
+        );
         let mut learning = learning.unwrap();
         learning.reward(&mut rollouts);
-        learning.learn();
+        learning.learn().unwrap();
         learning.reward(&mut rollouts);
         let (mut own, mut section) = (Section::default(), Section::default());
         learning.save(&mut own).unwrap();

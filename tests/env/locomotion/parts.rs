@@ -18,10 +18,7 @@ fn one(config: &EnvConfig) -> Player {
         LocomotionTask::Obstacles(_) => 0,
     };
     let part = CpuLocomotion::part(MATCHER.clone(), config, 0, jitter);
-    let envs = EnvBatch {
-        parts: vec![Box::new(part) as Box<dyn VecEnv>],
-        curriculum: None,
-    };
+    let envs = EnvBatch::new(vec![Box::new(part) as Box<dyn VecEnv>], None);
     Player::new(&Device::Cpu, envs, config, STEPS)
 }
 

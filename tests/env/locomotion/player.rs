@@ -37,12 +37,9 @@ impl Player {
     pub fn together(device: &Device, config: &EnvConfig, steps: usize) -> Self {
         let part: Box<dyn VecEnv> = match device {
             Device::Cpu => Box::new(CpuLocomotion::new(MATCHER.clone(), config)),
-            Device::Gpu(gpu) => Box::new(GpuLocomotion::new(gpu, &MATCHER, config, 0)),
+            Device::Gpu(gpu) => Box::new(GpuLocomotion::new(gpu, &MATCHER, config, 0, 0)),
         };
-        let envs = EnvBatch {
-            parts: vec![part],
-            curriculum: None,
-        };
+        let envs = EnvBatch::new(vec![part], None);
         Self::new(device, envs, config, steps)
     }
 
