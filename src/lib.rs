@@ -71,7 +71,7 @@
 //!
 //! All of `capi`, `cli`, `export`, `gpu`, `report`, `train` and `viewer` are on by default. Without any of them the crate
 //! is motion matching and physics on the CPU, without burn, wgpu or a command line. `train,cli` trains on
-//! the CPU. No real GPU has been measured yet: the shaders are tested on Mesa's lavapipe.
+//! the CPU; `mpi` lets ranks train together. No real GPU has been measured yet: the shaders are tested on Mesa's lavapipe.
 
 #![warn(missing_docs, clippy::print_stdout, clippy::print_stderr)]
 #![allow(rustdoc::private_intra_doc_links)]

@@ -188,7 +188,7 @@ impl Train {
         let (task, device) = (&*opened.task, &opened.device);
         let several = match ranks.count() {
             1 => String::new(),
-            count => format!(" on each of {count} ranks' shares"),
+            count => format!(" shared by {count} ranks"),
         };
         tell!(
             "training `{}` on {}: {} environments{several}, {}; run folder {}",
