@@ -18,9 +18,11 @@ mod progress;
 mod render;
 mod run;
 pub mod say;
+mod setting;
 mod sim;
 mod tournament;
 mod train;
+mod trainings;
 mod usage;
 #[cfg(feature = "viewer")]
 mod watch;

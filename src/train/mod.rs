@@ -18,6 +18,7 @@ pub mod evaluation;
 #[cfg(feature = "report")]
 pub mod figures;
 pub mod fingerprint;
+pub mod known_summary;
 pub mod locomotion;
 pub mod low_level;
 pub mod memory;
