@@ -9,6 +9,7 @@ mod eval;
 mod export;
 #[cfg(feature = "viewer")]
 mod filming;
+mod grid;
 #[cfg(feature = "viewer")]
 mod latents;
 #[cfg(feature = "viewer")]
@@ -20,6 +21,7 @@ mod run;
 pub mod say;
 mod setting;
 mod sim;
+mod sweep;
 mod tournament;
 mod train;
 mod trainings;
@@ -49,6 +51,8 @@ enum Command {
     Train(train::Train),
     /// Train variants of a task side by side
     Ablate(ablate::Ablate),
+    /// Train with every combination of the values of some keys
+    Sweep(sweep::Sweep),
     /// Train a policy that acts itself and one that steers skills, side by side
     Compare(compare::Compare),
     /// Evaluate a trained policy on a fixed set of episodes
@@ -85,6 +89,7 @@ impl Command {
         match self {
             Command::Train(train) => train.run(),
             Command::Ablate(ablate) => ablate.run(),
+            Command::Sweep(sweep) => sweep.run(),
             Command::Compare(compare) => compare.run(),
             Command::Eval(eval) => eval.run(),
             Command::Export(export) => export.run(),
