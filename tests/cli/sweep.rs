@@ -60,7 +60,7 @@ fn a_sweep_trains_every_combination_and_keeps_what_is_finished() {
     let fewer = words.replace(" 2048 ", " 1024 ");
     place.refused(&fewer, 1, &["has done 2048 steps, more than are asked for"]);
     let other = "holds a run of another configuration";
-    place.refused(&format!("{words} --set ppo.epochs=3"), 1, &[other]);
+    place.refused(&format!("{words} --set ppo.epochs=7"), 1, &[other]);
     let others = "runs/plane-sweep holds other runs, like gamma=";
     place.refused(&words.replace(",0.99", ""), 1, &[others]);
 }
@@ -138,7 +138,7 @@ fn an_interrupted_sweep_goes_on_with_the_same_command() {
 #[test]
 fn a_training_that_reached_its_goal_is_finished() {
     let place = Place::with_data();
-    let goal = "--set stop_at_success=0.001 --set evaluate_every=1024";
+    let goal = "--set stop_at_success=0.01 --set evaluate_every=1024";
     let words = format!("{SWEEP} {goal} --seeds 1 --steps 65536");
     place.done(&words);
     let path = "runs/plane-sweep/plane-1/summary.json";
