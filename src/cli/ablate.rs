@@ -1,15 +1,15 @@
 //! `footwork ablate`.
 
 use super::Usage;
-use super::progress::Progress;
-use super::say::{say, show};
+use super::setting::Settings;
 use super::train::{Choices, Opened, on_interrupt};
+use super::trainings::Trainings;
 use anyhow::Result;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use footwork::ranks::Ranks;
 use footwork::train::checkpoint::Checkpoint;
-use footwork::train::comparison::{Comparison, Contestant, Outcome};
+use footwork::train::comparison::{Comparison, Contestant};
 use footwork::train::config::Config;
 use footwork::train::task::{Ablation, Task, TaskEntry};
 use footwork::train::tasks::REGISTRY;
@@ -22,14 +22,10 @@ pub struct Ablate {
     what: String,
     #[command(flatten)]
     choices: Choices,
-    /// Trainings of each variant, from the seeds 1, 2, ..
-    #[arg(
-        long,
-        default_value_t = 3,
-        value_name = "N",
-        allow_negative_numbers = true
-    )]
-    seeds: u32,
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    trainings: Trainings,
     /// Folder of all its runs; given again, it goes on where it was [default: runs/WHAT]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -52,16 +48,14 @@ fn names() -> PossibleValuesParser {
 }
 
 impl Ablate {
-    pub fn run(self) -> Result<()> {
-        if self.seeds == 0 || self.seeds > 100 {
-            return Err(Usage("--seeds must be from 1 to 100".into()).into());
-        }
+    pub fn run(self, ranks: &Ranks) -> Result<()> {
+        self.trainings.check()?;
         let found = all().find(|(_, ablation)| ablation.name == self.what);
         let Some((entry, ablation)) = found else {
             return Err(Usage(format!("there is no ablation `{}`", self.what)).into());
         };
         let interrupted = on_interrupt()?;
-        let mut config = self.choices.config(entry)?;
+        let mut config = self.choices.config(entry, &self.settings.all)?;
         let Opened { device, task, .. } = Opened::new(entry, &mut config, &Ranks::alone())?;
         let out = self.out.unwrap_or_else(|| ablation.folder.into());
         let start = self.choices.start()?;
@@ -69,16 +63,14 @@ impl Ablate {
             title: "ablation",
             entry,
             contestants: contestants(ablation, &config, &*task, start.as_ref())?,
+            seeds: self.trainings.seeds,
             measures: ablation.measures,
             rates: ablation.rates,
             device: &device,
+            ranks,
             out: &out,
         };
-        let mut progress = Progress::new(&config);
-        let outcomes = comparison.run(self.seeds, interrupted, &mut progress)?;
-        drop(progress);
-        report_outcomes(&comparison, outcomes.as_deref());
-        Ok(())
+        self.trainings.run(&comparison, interrupted)
     }
 }
 
@@ -92,9 +84,12 @@ fn contestants<'a>(
     let variants = ablation.variants.iter();
     let contestant = variants.map(|variant| {
         let mut config = base.clone();
-        config.task.settings.extend((variant.changes)());
+        let changes = (variant.changes)();
+        config.task.settings.extend(changes.clone());
+        let key = |(name, value)| (format!("task.{name}"), value);
         Ok(Contestant {
-            name: variant.name,
+            name: variant.name.to_string(),
+            settings: changes.into_iter().map(key).collect(),
             task: task.with_choices(&config)?,
             config,
             start,
@@ -102,13 +97,4 @@ fn contestants<'a>(
         })
     });
     contestant.collect()
-}
-
-/// Says what came of a comparison.
-pub fn report_outcomes(comparison: &Comparison, outcomes: Option<&[Outcome]>) {
-    match outcomes {
-        Some(outcomes) => show!("{}", comparison.summary(outcomes)),
-        None => say!("go on with the same command"),
-    }
-    say!("see {}", comparison.out.display());
 }

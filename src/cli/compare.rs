@@ -1,9 +1,9 @@
 //! `footwork compare`.
 
 use super::Usage;
-use super::ablate::report_outcomes;
-use super::progress::Progress;
+use super::setting::Settings;
 use super::train::{Choices, Opened, on_interrupt};
+use super::trainings::Trainings;
 use anyhow::Result;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
@@ -13,6 +13,7 @@ use footwork::train::comparison::{Comparison, Contestant};
 use footwork::train::config::Config;
 use footwork::train::task::TaskEntry;
 use footwork::train::tasks::{REGISTRY, find};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -22,14 +23,10 @@ pub struct Compare {
     what: String,
     #[command(flatten)]
     choices: Choices,
-    /// Trainings of each, from the seeds 1, 2, ..
-    #[arg(
-        long,
-        default_value_t = 3,
-        value_name = "N",
-        allow_negative_numbers = true
-    )]
-    seeds: u32,
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    trainings: Trainings,
     /// Folder of all its runs; given again, it goes on where it was [default: runs/compare-TASK]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -41,10 +38,8 @@ fn names() -> PossibleValuesParser {
 }
 
 impl Compare {
-    pub fn run(self) -> Result<()> {
-        if self.seeds == 0 || self.seeds > 100 {
-            return Err(Usage("--seeds must be from 1 to 100".into()).into());
-        }
+    pub fn run(self, ranks: &Ranks) -> Result<()> {
+        self.trainings.check()?;
         let entry = find(&self.what)?;
         let Some(steering) = &entry.steering else {
             return Err(Usage(format!("`{}` steers no low level", entry.name)).into());
@@ -58,35 +53,35 @@ impl Compare {
         ];
         let out = format!("runs/compare-{}", entry.name).into();
         let out = self.out.unwrap_or(out);
-        let mut progress = Progress::new(&acting);
         let comparison = Comparison {
             title: "comparison",
             entry,
             contestants: vec![
                 Contestant {
-                    name: "direct",
+                    name: "direct".to_string(),
+                    settings: BTreeMap::new(),
                     config: acting,
                     task: direct.task,
                     start: start.as_ref(),
                     body_steps: 1,
                 },
                 Contestant {
-                    name: "steered",
+                    name: "steered".to_string(),
+                    settings: skills(&steered),
                     config: steered,
                     task: high.task,
                     start: None,
                     body_steps: STEPS_PER_DECISION as u64,
                 },
             ],
+            seeds: self.trainings.seeds,
             measures: steering.measures,
             rates: steering.rates,
             device: &direct.device,
+            ranks,
             out: &out,
         };
-        let outcomes = comparison.run(self.seeds, interrupted, &mut progress)?;
-        drop(progress);
-        report_outcomes(&comparison, outcomes.as_deref());
-        Ok(())
+        self.trainings.run(&comparison, interrupted)
     }
 
     /// The choices of a policy that acts itself, and of one that steers the low level: as many steps of the body.
@@ -97,9 +92,18 @@ impl Compare {
         }
         let mut acting = self.choices.clone();
         acting.skills = None;
-        let acting = acting.config(entry)?;
-        let mut steering = self.choices.config(entry)?;
+        let acting = acting.config(entry, &self.settings.all)?;
+        let mut steering = self.choices.config(entry, &self.settings.all)?;
         steering.steps = acting.steps.div_ceil(STEPS_PER_DECISION as u64);
         Ok([acting, steering])
     }
+}
+
+/// The key by which a policy that steers is another.
+fn skills(steered: &Config) -> BTreeMap<String, toml::Value> {
+    let skills = steered.skills.iter();
+    let value = |skills: &PathBuf| skills.display().to_string().into();
+    skills
+        .map(|skills| ("skills".to_string(), value(skills)))
+        .collect()
 }

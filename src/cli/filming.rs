@@ -30,8 +30,8 @@ impl<'a, O: Observer> Filming<'a, O> {
 }
 
 impl<O: Observer> Observer for Filming<'_, O> {
-    fn begins(&mut self, config: &Config) {
-        self.inner.begins(config);
+    fn begins(&mut self, name: &str, config: &Config) {
+        self.inner.begins(name, config);
     }
 
     fn opened(&mut self, envs: &mut EnvBatch) -> Result<()> {

@@ -9,6 +9,7 @@ mod eval;
 mod export;
 #[cfg(feature = "viewer")]
 mod filming;
+mod grid;
 #[cfg(feature = "viewer")]
 mod latents;
 #[cfg(feature = "viewer")]
@@ -19,9 +20,12 @@ mod ranks;
 mod render;
 mod run;
 pub mod say;
+mod setting;
 mod sim;
+mod sweep;
 mod tournament;
 mod train;
+mod trainings;
 mod usage;
 #[cfg(feature = "viewer")]
 mod watch;
@@ -30,6 +34,7 @@ mod web;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use footwork::motion::error::MotionError;
+use footwork::ranks::Ranks;
 use footwork::train::config::ConfigError;
 use footwork::train::task::Unsupported;
 pub use usage::Usage;
@@ -48,6 +53,8 @@ enum Command {
     Train(train::Train),
     /// Train variants of a task side by side
     Ablate(ablate::Ablate),
+    /// Train with every combination of the values of some keys
+    Sweep(sweep::Sweep),
     /// Train a policy that acts itself and one that steers skills, side by side
     Compare(compare::Compare),
     /// Evaluate a trained policy on a fixed set of episodes
@@ -75,19 +82,22 @@ enum Command {
 }
 
 pub fn run() -> Result<()> {
-    Cli::parse().command.run()?;
+    let command = Cli::parse().command;
+    ranks::together(|ranks| command.run(ranks))?;
     say::printed()
 }
 
 impl Command {
-    fn run(self) -> Result<()> {
-        if !matches!(self, Command::Train(_)) {
-            ranks::refuse()?;
+    fn run(self, ranks: &Ranks) -> Result<()> {
+        if !ranks.is_alone() && !self.is_for_ranks() {
+            let why = "this is done by one process: leave out mpiexec, which is for trainings";
+            return Err(Usage(why.into()).into());
         }
         match self {
-            Command::Train(train) => ranks::together(|ranks| train.run(ranks)),
-            Command::Ablate(ablate) => ablate.run(),
-            Command::Compare(compare) => compare.run(),
+            Command::Train(train) => train.run(ranks),
+            Command::Ablate(ablate) => ablate.run(ranks),
+            Command::Sweep(sweep) => sweep.run(ranks),
+            Command::Compare(compare) => compare.run(ranks),
             Command::Eval(eval) => eval.run(),
             Command::Export(export) => export.run(),
             Command::Tournament(tournament) => tournament.run(),
@@ -101,6 +111,14 @@ impl Command {
             Command::Bench(bench) => bench.run(),
             Command::Data(data) => data.run(),
         }
+    }
+
+    /// Whether ranks share in it.
+    fn is_for_ranks(&self) -> bool {
+        matches!(
+            self,
+            Command::Train(_) | Command::Ablate(_) | Command::Sweep(_) | Command::Compare(_)
+        )
     }
 }
 

@@ -5,7 +5,7 @@ use footwork::train::config::Config;
 use footwork::train::metrics::UpdateMetrics;
 use footwork::train::observer::Observer;
 use footwork::train::state::RecentMeans;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
@@ -13,6 +13,8 @@ use std::time::{Duration, Instant};
 const PLAIN: Duration = Duration::from_secs(5);
 
 pub struct Progress {
+    /// What the lines begin with, where there are several.
+    name: Option<String>,
     bar: Option<ProgressBar>,
     spoken: Option<Instant>,
     steps: u64,
@@ -22,28 +24,44 @@ pub struct Progress {
 impl Progress {
     /// The progress of a training.
     pub fn new(config: &Config) -> Self {
-        let bar = std::io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::new(config.steps);
-            if let Ok(style) = ProgressStyle::with_template("{bar:24} {msg}") {
-                bar.set_style(style);
-            }
-            bar
-        });
+        let mut progress = Progress::with(None, bar());
+        progress.limit(config);
+        progress
+    }
+
+    /// The progress of trainings at once, which are told apart by their names if they are several.
+    pub fn several(count: usize) -> Vec<Self> {
+        let bars = MultiProgress::new();
+        let name = (count > 1).then(String::new);
+        let progress = |_| Progress::with(name.clone(), bar().map(|bar| bars.add(bar)));
+        (0..count).map(progress).collect()
+    }
+
+    fn with(name: Option<String>, bar: Option<ProgressBar>) -> Self {
         Progress {
+            name,
             bar,
             spoken: None,
-            steps: config.steps,
-            max_time_s: config.max_time_s,
+            steps: 0,
+            max_time_s: None,
+        }
+    }
+
+    /// Takes over when a training will end.
+    fn limit(&mut self, config: &Config) {
+        (self.steps, self.max_time_s) = (config.steps, config.max_time_s);
+        if let Some(bar) = &self.bar {
+            bar.set_length(config.steps);
         }
     }
 }
 
 impl Observer for Progress {
-    fn begins(&mut self, config: &Config) {
-        (self.steps, self.max_time_s) = (config.steps, config.max_time_s);
-        if let Some(bar) = &self.bar {
-            bar.set_length(config.steps);
+    fn begins(&mut self, name: &str, config: &Config) {
+        if let Some(own) = &mut self.name {
+            *own = format!("{name}: ");
         }
+        self.limit(config);
     }
 
     fn noted(&mut self, note: &str) {
@@ -61,7 +79,8 @@ impl Observer for Progress {
             .map_or(by_steps, |max| by_steps.min(max - row.wall_s))
             .max(0.0);
         let line = format!(
-            "{:>9} steps{}  success {:>5.1} %  return {:>7.1}{}  {:>7.0} steps/s{}  {} gone, at most {} left",
+            "{}{:>9} steps{}  success {:>5.1} %  return {:>7.1}{}  {:>7.0} steps/s{}  {} gone, at most {} left",
+            self.name.as_deref().unwrap_or_default(),
             row.steps,
             row.level
                 .map_or(String::new(), |level| format!("  level {level}")),
@@ -110,6 +129,17 @@ fn communication(row: &UpdateMetrics) -> String {
     let share = row.communication_s.map(|seconds| seconds / all.max(1e-9));
     share.map_or(String::new(), |share| {
         format!("  communication {:.0} %", 100.0 * share)
+    })
+}
+
+/// A bar, where somebody looks on.
+fn bar() -> Option<ProgressBar> {
+    std::io::stderr().is_terminal().then(|| {
+        let bar = ProgressBar::no_length();
+        if let Ok(style) = ProgressStyle::with_template("{bar:24} {msg}") {
+            bar.set_style(style);
+        }
+        bar
     })
 }
 

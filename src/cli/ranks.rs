@@ -1,5 +1,6 @@
 //! The ranks that `mpiexec` has started this program as.
 
+#[cfg(not(feature = "mpi"))]
 use super::Usage;
 #[cfg(feature = "mpi")]
 use super::{exit_code, say};
@@ -13,22 +14,9 @@ const COUNTS: [&str; 2] = ["PMI_SIZE", "OMPI_COMM_WORLD_SIZE"];
 
 /// Whether a launcher has started this process as one of several, as far as can be known.
 fn is_launched() -> bool {
-    let is_set = |name: &&str| std::env::var_os(name).is_some();
-    let alone = COUNTS
-        .iter()
-        .any(|name| std::env::var(name).is_ok_and(|count| count == "1"));
-    NUMBERS.iter().any(|name| is_set(&name)) && !alone
-}
-
-/// Refuses to do several times what one process does.
-pub fn refuse() -> Result<()> {
-    match is_launched() {
-        false => Ok(()),
-        true => Err(Usage(
-            "this is done by one process: leave out mpiexec, which is for `footwork train`".into(),
-        )
-        .into()),
-    }
+    let value = |name: &&str| std::env::var(name).ok();
+    let alone = COUNTS.iter().filter_map(value).any(|count| count == "1");
+    !alone && NUMBERS.iter().find_map(value).is_some()
 }
 
 /// Does something together with the other ranks, or alone.

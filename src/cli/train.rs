@@ -6,6 +6,7 @@ use super::filming::Filming;
 use super::progress::Progress;
 use super::run::{Moved, locate};
 use super::say::{say, tell};
+use super::setting::{Setting, Settings};
 #[cfg(feature = "viewer")]
 use super::watch::watched;
 use anyhow::Result;
@@ -36,6 +37,8 @@ pub struct Train {
     task: String,
     #[command(flatten)]
     choices: Choices,
+    #[command(flatten)]
+    settings: Settings,
     /// Stop after this time in all, like 90s, 5m or 1h30m; looked at after each update
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, allow_hyphen_values = true)]
     max_time: Option<std::time::Duration>,
@@ -131,32 +134,10 @@ pub struct Choices {
     /// A TOML file that changes keys of the preset: see any run's config.toml
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// Change one key after that, like ppo.gamma=0.98; may be given several times
-    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
-    set: Vec<Setting>,
 }
 
-/// A key of the configuration with its new value.
-#[derive(Clone)]
-struct Setting {
-    key: String,
-    value: toml::Value,
-}
-
-/// A value is TOML, or else a word.
-fn setting(text: &str) -> Result<Setting, String> {
-    let Some((key, value)) = text.split_once('=') else {
-        return Err("a key, `=` and a value, like ppo.gamma=0.98".into());
-    };
-    let parsed = toml::from_str(&format!("value = {value}"));
-    let parsed = parsed.map(|mut table: toml::Table| table.remove("value"));
-    Ok(Setting {
-        key: key.trim().to_string(),
-        value: parsed.ok().flatten().unwrap_or_else(|| value.into()),
-    })
-}
-
-fn names() -> PossibleValuesParser {
+/// The names of all tasks.
+pub fn names() -> PossibleValuesParser {
     let names = REGISTRY.iter();
     PossibleValuesParser::new(names.map(|entry| PossibleValue::new(entry.name).help(entry.about)))
 }
@@ -236,7 +217,7 @@ impl Train {
 
     /// The configuration of a new run.
     fn fresh(&self, entry: &TaskEntry) -> Result<Config> {
-        let mut config = self.choices.config(entry)?;
+        let mut config = self.choices.config(entry, &self.settings.all)?;
         config.seed = self.seed.unwrap_or(config.seed);
         if self.no_hit_reward {
             config.set("task.hit_reward", 0.0.into())?;
@@ -294,8 +275,8 @@ impl Choices {
         Ok(Some(Checkpoint::load(&checkpoint_of(run)?)?))
     }
 
-    /// Preset, changed by the file, changed by the options.
-    pub fn config(&self, entry: &TaskEntry) -> Result<Config> {
+    /// Preset, changed by the file, changed by `settings`, changed by the options.
+    pub fn config(&self, entry: &TaskEntry, settings: &[Setting]) -> Result<Config> {
         let (preset, steers) = (self.preset.unwrap_or_default(), self.skills.is_some());
         let mut config = match &self.config {
             Some(path) => entry.config_from(path, preset, steers)?,
@@ -308,8 +289,8 @@ impl Choices {
             ))
             .into());
         }
-        for setting in &self.set {
-            config.set(&setting.key, setting.value.clone())?;
+        for Setting { key, value } in settings {
+            config.set(key, value.clone())?;
         }
         config.device = self.device.unwrap_or(config.device);
         config.ppo.envs = self.envs.unwrap_or(config.ppo.envs);

@@ -14,7 +14,7 @@ use super::learning_curve::{self, PANELS, Panel, Point};
 pub struct Method {
     /// A few words for the legend.
     pub name: String,
-    /// Index into [`chart::PALETTE`].
+    /// Index of a colour, see [`chart::colour`].
     pub colour: usize,
     /// What training had reached at one moment after another, for each seed. The seeds
     /// need neither the same moments nor the same length.

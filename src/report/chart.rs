@@ -33,9 +33,20 @@ pub const NORMAL: f64 = 24.0;
 /// Height of a panel's title, in pixels.
 pub const LARGE: f64 = 28.0;
 
-/// The palette's colour of that index, starting over after the last.
+/// The palette's colour of that index; after the last come darker shades, then lighter ones, then all again.
 pub fn colour(index: usize) -> RGBColor {
-    PALETTE[index % PALETTE.len()]
+    let colour = PALETTE[index % PALETTE.len()];
+    match index / PALETTE.len() % 3 {
+        0 => colour,
+        1 => shade(colour, 0.5),
+        _ => tint(colour, 0.5),
+    }
+}
+
+/// `strength` 1 is the colour itself, 0 black.
+fn shade(colour: RGBColor, strength: f64) -> RGBColor {
+    let mix = |part: u8| (strength * f64::from(part)).round() as u8;
+    RGBColor(mix(colour.0), mix(colour.1), mix(colour.2))
 }
 
 /// `strength` 1 is the colour itself, 0 white.

@@ -30,10 +30,12 @@ impl Default for Evaluation {
 impl Serialize for Evaluation {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let episodes = [("episodes", serde_json::json!(self.episodes))];
+        let name = [("success_name", self.success_name.into())];
         let success = [(self.success_name, self.success.into())];
         let measures = self.measures.iter();
         let measures = measures.map(|(name, value)| (*name, (*value).into()));
-        to.collect_map(episodes.into_iter().chain(success).chain(measures))
+        let first = episodes.into_iter().chain(name).chain(success);
+        to.collect_map(first.chain(measures))
     }
 }
 

@@ -19,6 +19,7 @@ pub mod evaluation;
 #[cfg(feature = "report")]
 pub mod figures;
 pub mod fingerprint;
+pub mod known_summary;
 pub mod locomotion;
 pub mod low_level;
 pub mod memory;

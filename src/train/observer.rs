@@ -9,8 +9,8 @@ use anyhow::Result;
 
 /// What a training tells while it runs. `()` does not listen.
 pub trait Observer {
-    /// Another training with these choices begins, of several.
-    fn begins(&mut self, _config: &Config) {}
+    /// Another training of several begins: its name, and its choices.
+    fn begins(&mut self, _name: &str, _config: &Config) {}
 
     /// The environments are open, and nothing has been played.
     ///

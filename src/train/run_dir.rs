@@ -200,6 +200,11 @@ impl RunDir {
         self.file("metrics.jsonl")
     }
 
+    /// Where the summary of its end is.
+    pub fn summary_path(&self) -> PathBuf {
+        self.file("summary.json")
+    }
+
     fn checkpoints(&self) -> PathBuf {
         self.file("checkpoints")
     }
@@ -270,7 +275,7 @@ impl RunDir {
     /// It cannot be written.
     pub fn write_summary(&self, summary: &Summary) -> Result<()> {
         let text = serde_json::to_string_pretty(summary)? + "\n";
-        Ok(write_whole(&self.file("summary.json"), text.as_bytes())?)
+        Ok(write_whole(&self.summary_path(), text.as_bytes())?)
     }
 }
 

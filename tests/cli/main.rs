@@ -26,6 +26,7 @@ mod steering;
 #[cfg(unix)]
 mod stopped;
 mod style;
+mod sweep;
 mod train;
 #[cfg(target_os = "linux")]
 mod window;

@@ -1,6 +1,7 @@
 //! Trainings that are stopped from outside go on later.
 
 use super::{Place, TRAIN, rows};
+use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
@@ -14,16 +15,20 @@ fn start(place: &Place) -> Child {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let begin = Instant::now();
     // It comes after the first checkpoint.
-    while !place.path("run/config.toml").exists() {
-        assert!(begin.elapsed() < Duration::from_secs(60), "nothing saved");
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    wait_for(&place.path("run/config.toml"));
     child
 }
 
-fn signal(child: &mut Child, name: &str) -> ExitStatus {
+pub fn wait_for(file: &Path) {
+    let begin = Instant::now();
+    while !file.exists() {
+        assert!(begin.elapsed() < Duration::from_secs(60), "nothing saved");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+pub fn signal(child: &mut Child, name: &str) -> ExitStatus {
     let pid = child.id().to_string();
     let sent = Command::new("kill")
         .args([&format!("-{name}"), &pid])
