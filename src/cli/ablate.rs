@@ -1,9 +1,10 @@
 //! `footwork ablate`.
 
 use super::Usage;
+use super::opened::Opened;
 use super::progress::Progress;
 use super::say::{say, show};
-use super::train::{Choices, Opened, on_interrupt};
+use super::train::{Choices, on_interrupt};
 use anyhow::Result;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
@@ -60,8 +61,14 @@ impl Ablate {
             return Err(Usage(format!("there is no ablation `{}`", self.what)).into());
         };
         let interrupted = on_interrupt()?;
-        let mut config = self.choices.config(entry)?;
-        let Opened { device, task, .. } = Opened::new(entry, &mut config)?;
+        let choices = &self.choices;
+        let opened = choices.open(entry, &|envs| choices.config(entry, envs))?;
+        let Opened {
+            config,
+            device,
+            task,
+            ..
+        } = opened;
         let out = self.out.unwrap_or_else(|| ablation.folder.into());
         let start = self.choices.start()?;
         let comparison = Comparison {

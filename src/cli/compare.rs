@@ -2,14 +2,14 @@
 
 use super::Usage;
 use super::ablate::report_outcomes;
+use super::opened::Opened;
 use super::progress::Progress;
-use super::train::{Choices, Opened, on_interrupt};
+use super::train::{Choices, on_interrupt};
 use anyhow::Result;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use footwork::rl::ase::STEPS_PER_DECISION;
 use footwork::train::comparison::{Comparison, Contestant};
-use footwork::train::config::Config;
 use footwork::train::task::TaskEntry;
 use footwork::train::tasks::{REGISTRY, find};
 use std::path::PathBuf;
@@ -50,29 +50,25 @@ impl Compare {
         };
         let interrupted = on_interrupt()?;
         let start = self.choices.start()?;
-        let [mut acting, mut steered] = self.configurations(entry)?;
-        let [direct, high] = [
-            Opened::new(entry, &mut acting)?,
-            Opened::new(entry, &mut steered)?,
-        ];
+        let [direct, steered] = self.open(entry)?;
         let out = format!("runs/compare-{}", entry.name).into();
         let out = self.out.unwrap_or(out);
-        let mut progress = Progress::new(&acting);
+        let mut progress = Progress::new(&direct.config);
         let comparison = Comparison {
             title: "comparison",
             entry,
             contestants: vec![
                 Contestant {
                     name: "direct",
-                    config: acting,
+                    config: direct.config,
                     task: direct.task,
                     start: start.as_ref(),
                     body_steps: 1,
                 },
                 Contestant {
                     name: "steered",
-                    config: steered,
-                    task: high.task,
+                    config: steered.config,
+                    task: steered.task,
                     start: None,
                     body_steps: STEPS_PER_DECISION as u64,
                 },
@@ -88,17 +84,23 @@ impl Compare {
         Ok(())
     }
 
-    /// The choices of a policy that acts itself, and of one that steers the low level: as many steps of the body.
-    fn configurations(&self, entry: &TaskEntry) -> Result<[Config; 2]> {
+    /// The training of a policy that acts itself, and on the same device that of one which steers the low level: as many
+    /// steps of the body.
+    fn open(&self, entry: &TaskEntry) -> Result<[Opened; 2]> {
         if self.choices.skills.is_none() {
             let why = "--skills RUN names the low level that is to be compared with none";
             return Err(Usage(why.into()).into());
         }
         let mut acting = self.choices.clone();
         acting.skills = None;
-        let acting = acting.config(entry)?;
-        let mut steering = self.choices.config(entry)?;
-        steering.steps = acting.steps.div_ceil(STEPS_PER_DECISION as u64);
-        Ok([acting, steering])
+        let direct = acting.open(entry, &|envs| acting.config(entry, envs))?;
+        let mut steering = self.choices.clone();
+        steering.device = Some(direct.config.device);
+        let steered = steering.open(entry, &|envs| {
+            let mut config = steering.config(entry, envs)?;
+            config.steps = direct.config.steps.div_ceil(STEPS_PER_DECISION as u64);
+            Ok(config)
+        })?;
+        Ok([direct, steered])
     }
 }

@@ -3,6 +3,8 @@
 mod ablate;
 #[cfg(feature = "viewer")]
 mod bench;
+#[cfg(feature = "viewer")]
+mod calibrate;
 mod compare;
 mod data;
 mod eval;
@@ -11,6 +13,7 @@ mod export;
 mod filming;
 #[cfg(feature = "viewer")]
 mod latents;
+mod opened;
 #[cfg(feature = "viewer")]
 mod play;
 mod progress;
