@@ -10,7 +10,7 @@ use std::fmt::{Display, Formatter};
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Choice {
-    /// A real GPU if there is one, else the native CPU path.
+    /// A real GPU if there is one, else the native CPU path; trainings take the quicker of them, as measured.
     #[default]
     Auto,
     /// The native CPU path: SIMD on all cores, networks by custom CPU kernels.
