@@ -5,7 +5,7 @@ use super::Ppo;
 impl Ppo {
     /// The same learning in another number of environments, as far as that goes: in `r` times as many the rollout is
     /// the square root of `r` times shorter, so that batch and minibatch grow by that root, and the learning rate by
-    /// the root of it. Fewer environments change nothing else.
+    /// the root of it, unless it is adapted to the KL divergence. Fewer environments change nothing else.
     pub fn scaled_to(&self, envs: usize) -> Ppo {
         let scaled = Ppo {
             envs,
@@ -17,10 +17,14 @@ impl Ppo {
         let root = (envs as f64 / self.envs as f64).sqrt();
         let rollout_length = ((self.rollout_length as f64 / root).round() as usize).max(1);
         let batch_ratio = (envs * rollout_length) as f64 / self.batch() as f64;
+        let rate_ratio = match self.desired_kl > 0.0 {
+            true => 1.0,
+            false => batch_ratio.sqrt(),
+        };
         Ppo {
             rollout_length,
             minibatch_size: (self.minibatch_size as f64 * batch_ratio).round() as usize,
-            learning_rate: self.learning_rate * batch_ratio.sqrt(),
+            learning_rate: self.learning_rate * rate_ratio,
             ..scaled
         }
     }
@@ -68,6 +72,15 @@ mod tests {
             assert!(scaled.rollout_length > 0);
             assert!((minibatches(&scaled) / minibatches(&preset) - 1.0).abs() < 0.01);
         }
+    }
+
+    #[test]
+    fn an_adapted_learning_rate_finds_its_own() {
+        let preset = Ppo {
+            desired_kl: 0.02,
+            ..Ppo::default()
+        };
+        assert_eq!(decided(&preset.scaled_to(4096)), (4, 2048, 2e-3));
     }
 
     #[test]
