@@ -2,7 +2,7 @@
 
 use crate::errors::raised;
 use footwork::gpu::Choice;
-use footwork::train::config::{Config, Preset};
+use footwork::train::config::{Base, Config, Preset};
 use footwork::train::task::TaskEntry;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -32,7 +32,11 @@ impl Choices<'_, '_> {
                 return Err(PyValueError::new_err(why));
             }
         };
-        let mut config = entry.config_of(preset, self.skills.is_some());
+        let mut config = entry.config_of(Base {
+            preset,
+            steers: self.skills.is_some(),
+            envs: None,
+        });
         let mut changes = Vec::new();
         if let Some(settings) = self.settings {
             flatten("", settings, &mut changes)?;

@@ -8,7 +8,7 @@ use crate::env::locomotion::{EnvConfig, LocomotionTask, Obstacles, Plane};
 use crate::kernels::learn::gather_samples::width;
 use crate::rl::Algorithm;
 use crate::rl::ppo::{Ppo, PpoLearner};
-use crate::train::config::Preset;
+use crate::train::config::Base;
 use crate::train::tasks::find;
 use anyhow::Result;
 
@@ -43,12 +43,13 @@ pub fn measure(context: &BenchContext, record: &mut Recorder) -> Result<()> {
     Ok(())
 }
 
-/// The preset `fast` with so many environments; minibatches grow with them.
+/// The preset `fast` in so many environments.
 fn ppo(task: &str, envs: usize) -> Result<Ppo> {
-    let mut ppo = find(task)?.config(Preset::Fast).ppo;
-    ppo.minibatch_size = ppo.minibatch_size * envs / ppo.envs;
-    ppo.envs = envs;
-    Ok(ppo)
+    let base = Base {
+        envs: Some(envs),
+        ..Base::default()
+    };
+    Ok(find(task)?.config_of(base).ppo)
 }
 
 /// Measures updates and returns the seconds of one.

@@ -1,8 +1,9 @@
 //! `footwork ablate`.
 
 use super::Usage;
+use super::opened::Opened;
 use super::setting::Settings;
-use super::train::{Choices, Opened, on_interrupt};
+use super::train::{Choices, on_interrupt};
 use super::trainings::Trainings;
 use anyhow::Result;
 use clap::Args;
@@ -55,8 +56,14 @@ impl Ablate {
             return Err(Usage(format!("there is no ablation `{}`", self.what)).into());
         };
         let interrupted = on_interrupt()?;
-        let mut config = self.choices.config(entry, &self.settings.all)?;
-        let Opened { device, task, .. } = Opened::new(entry, &mut config, &Ranks::alone())?;
+        let (choices, settings) = (&self.choices, &self.settings.all);
+        let configure = |envs| choices.config(entry, envs, settings);
+        let Opened {
+            config,
+            device,
+            task,
+            ..
+        } = choices.open(entry, &Ranks::alone(), &configure)?;
         let out = self.out.unwrap_or_else(|| ablation.folder.into());
         let start = self.choices.start()?;
         let comparison = Comparison {

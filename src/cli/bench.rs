@@ -1,7 +1,9 @@
 //! `footwork bench`.
 
 use super::Usage;
+use super::calibrate::calibrate;
 use super::say::{say, show};
+use super::train::names;
 use super::usage::writable;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -38,10 +40,22 @@ pub struct Bench {
     /// Also draw the scaling curves of search and training
     #[arg(long, value_name = "PNG")]
     plot: Option<PathBuf>,
+    /// Only measure where TASK, or every task, trains quickest, and keep that for `--device auto` and `--envs auto`
+    #[arg(
+        long,
+        value_name = "TASK",
+        num_args = 0..=1,
+        value_parser = names(),
+        conflicts_with_all = ["filter", "json", "plot"]
+    )]
+    calibrate: Option<Option<String>>,
 }
 
 impl Bench {
     pub fn run(self) -> Result<()> {
+        if let Some(task) = &self.calibrate {
+            return calibrate(task.as_deref(), self.device, self.data.as_deref());
+        }
         if !STAGES.iter().any(|stage| stage.contains(&self.filter)) {
             let why = format!(
                 "no stage is called like {:?}: there are {}",

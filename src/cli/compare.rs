@@ -1,8 +1,9 @@
 //! `footwork compare`.
 
 use super::Usage;
+use super::opened::Opened;
 use super::setting::Settings;
-use super::train::{Choices, Opened, on_interrupt};
+use super::train::{Choices, on_interrupt};
 use super::trainings::Trainings;
 use anyhow::Result;
 use clap::Args;
@@ -46,11 +47,7 @@ impl Compare {
         };
         let interrupted = on_interrupt()?;
         let start = self.choices.start()?;
-        let [mut acting, mut steered] = self.configurations(entry)?;
-        let [direct, high] = [
-            Opened::new(entry, &mut acting, &Ranks::alone())?,
-            Opened::new(entry, &mut steered, &Ranks::alone())?,
-        ];
+        let [direct, steered] = self.open(entry)?;
         let out = format!("runs/compare-{}", entry.name).into();
         let out = self.out.unwrap_or(out);
         let comparison = Comparison {
@@ -60,16 +57,16 @@ impl Compare {
                 Contestant {
                     name: "direct".to_string(),
                     settings: BTreeMap::new(),
-                    config: acting,
+                    config: direct.config,
                     task: direct.task,
                     start: start.as_ref(),
                     body_steps: 1,
                 },
                 Contestant {
                     name: "steered".to_string(),
-                    settings: skills(&steered),
-                    config: steered,
-                    task: high.task,
+                    settings: skills(&steered.config),
+                    config: steered.config,
+                    task: steered.task,
                     start: None,
                     body_steps: STEPS_PER_DECISION as u64,
                 },
@@ -84,18 +81,26 @@ impl Compare {
         self.trainings.run(&comparison, interrupted)
     }
 
-    /// The choices of a policy that acts itself, and of one that steers the low level: as many steps of the body.
-    fn configurations(&self, entry: &TaskEntry) -> Result<[Config; 2]> {
+    /// The training of a policy that acts itself, and on the same device that of one which steers the low level: as many
+    /// steps of the body.
+    fn open(&self, entry: &TaskEntry) -> Result<[Opened; 2]> {
         if self.choices.skills.is_none() {
             let why = "--skills RUN names the low level that is to be compared with none";
             return Err(Usage(why.into()).into());
         }
         let mut acting = self.choices.clone();
         acting.skills = None;
-        let acting = acting.config(entry, &self.settings.all)?;
-        let mut steering = self.choices.config(entry, &self.settings.all)?;
-        steering.steps = acting.steps.div_ceil(STEPS_PER_DECISION as u64);
-        Ok([acting, steering])
+        let (alone, settings) = (Ranks::alone(), &self.settings.all);
+        let configure = |envs| acting.config(entry, envs, settings);
+        let direct = acting.open(entry, &alone, &configure)?;
+        let mut steering = self.choices.clone();
+        steering.device = Some(direct.config.device);
+        let steered = steering.open(entry, &alone, &|envs| {
+            let mut config = steering.config(entry, envs, settings)?;
+            config.steps = direct.config.steps.div_ceil(STEPS_PER_DECISION as u64);
+            Ok(config)
+        })?;
+        Ok([direct, steered])
     }
 }
 

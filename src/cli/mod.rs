@@ -3,6 +3,8 @@
 mod ablate;
 #[cfg(feature = "viewer")]
 mod bench;
+#[cfg(feature = "viewer")]
+mod calibrate;
 mod compare;
 mod data;
 mod eval;
@@ -12,6 +14,7 @@ mod filming;
 mod grid;
 #[cfg(feature = "viewer")]
 mod latents;
+mod opened;
 #[cfg(feature = "viewer")]
 mod play;
 mod progress;

@@ -2,8 +2,9 @@
 
 use super::Usage;
 use super::grid::{SweptKey, combinations, name, swept_key};
+use super::opened::Opened;
 use super::setting::Setting;
-use super::train::{Choices, Opened, names, on_interrupt};
+use super::train::{Choices, names, on_interrupt};
 use super::trainings::Trainings;
 use anyhow::Result;
 use clap::Args;
@@ -56,14 +57,20 @@ impl Sweep {
         let (fixed, swept): (Vec<SweptKey>, Vec<SweptKey>) =
             self.set.into_iter().partition(|key| key.values.len() == 1);
         let points = combinations(&swept);
-        let mut base = self.choices.config(entry, &combinations(&fixed)[0])?;
+        let (choices, fixed) = (&self.choices, &combinations(&fixed)[0]);
+        let base = choices.config(entry, None, fixed)?;
         // Before the data is loaded, which may take its time.
         for point in &points {
             entry.check(&with_settings(&base, point)?)?;
         }
-        let start = self.choices.start()?;
-        base = with_settings(&base, &points[0])?;
-        let Opened { device, task, .. } = Opened::new(entry, &mut base, &Ranks::alone())?;
+        let start = choices.start()?;
+        let configure = |envs| with_settings(&choices.config(entry, envs, fixed)?, &points[0]);
+        let Opened {
+            config: base,
+            device,
+            task,
+            ..
+        } = choices.open(entry, &Ranks::alone(), &configure)?;
         let out = format!("runs/{}-sweep", entry.name).into();
         let comparison = Comparison {
             title: "sweep",

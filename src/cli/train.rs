@@ -3,6 +3,7 @@
 use super::Usage;
 #[cfg(feature = "viewer")]
 use super::filming::Filming;
+use super::opened::Opened;
 use super::progress::Progress;
 use super::run::{Moved, locate};
 use super::say::{say, tell};
@@ -12,19 +13,17 @@ use super::watch::watched;
 use anyhow::Result;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use footwork::env::EnvSpec;
-use footwork::gpu::{Choice, Device};
+use footwork::gpu::Choice;
 use footwork::ranks::Ranks;
 use footwork::rl::ase::LowLevel;
-use footwork::rl::rollout::check_fits;
 use footwork::rl::task_weight::WeightRule;
 use footwork::train::agreement;
+use footwork::train::calibration::Configure;
 use footwork::train::checkpoint::Checkpoint;
-use footwork::train::config::{Config, Preset};
-use footwork::train::memory;
+use footwork::train::config::{Base, Config, Preset};
 use footwork::train::metrics;
 use footwork::train::run_dir::{RunDir, Summary, checkpoint_of};
-use footwork::train::task::{Task, TaskEntry};
+use footwork::train::task::TaskEntry;
 use footwork::train::tasks::{REGISTRY, config_of, find};
 use footwork::train::trainer::{Training, train};
 use std::path::{Path, PathBuf};
@@ -119,12 +118,13 @@ pub struct Choices {
     /// Begin with what another run of a simulated body has learned: its folder, or one of its checkpoints
     #[arg(long, value_name = "RUN")]
     from: Option<PathBuf>,
-    /// Where to run: a real GPU if there is one, else the CPU [default: auto]
+    /// Where to run: `auto` is the quicker of the CPU and a real GPU, as measured [default: auto]
     #[arg(long, value_enum)]
-    device: Option<Choice>,
-    /// Environments stepped together
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    envs: Option<usize>,
+    pub device: Option<Choice>,
+    /// Environments stepped together, or `auto`: as many as make training quicker, as measured. In more than
+    /// the preset's, rollouts, minibatches and the learning rate follow
+    #[arg(long, value_name = "N|auto", value_parser = envs, allow_negative_numbers = true)]
+    envs: Option<Envs>,
     /// Stop after this many environment steps in all, resumptions included [default: the preset's]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     steps: Option<u64>,
@@ -134,6 +134,25 @@ pub struct Choices {
     /// A TOML file that changes keys of the preset: see any run's config.toml
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
+}
+
+/// How many environments are stepped together.
+#[derive(Clone, Copy)]
+enum Envs {
+    /// As many as make training quicker.
+    Auto,
+    Number(usize),
+}
+
+fn envs(text: &str) -> Result<Envs, String> {
+    let number = || match text.parse() {
+        Ok(number) => Ok(Envs::Number(number)),
+        Err(error) => Err(format!("{error}; give a number or `auto`")),
+    };
+    match text {
+        "auto" => Ok(Envs::Auto),
+        _ => number(),
+    }
 }
 
 /// The names of all tasks.
@@ -149,19 +168,21 @@ impl Train {
         let interrupted = on_interrupt()?;
         let resumed = self.resume.as_deref();
         let resumed = resumed.map(|run| claim(run, ranks)).transpose()?;
-        let mut config = match &resumed {
-            Some((run, _)) => self.same(run, entry)?,
-            None => self.fresh(entry)?,
+        let opened = match &resumed {
+            Some((run, _)) => Opened::resumed(entry, ranks, self.same(run, entry)?)?,
+            None => {
+                let configure = |envs| self.fresh(entry, envs);
+                self.choices.open(entry, ranks, &configure)?
+            }
         };
-        self.limit(&mut config);
-        let opened = Opened::new(entry, &mut config, ranks)?;
+        let config = &opened.config;
         let start = self.choices.start()?;
         let from = match &resumed {
-            Some((run, path)) => Some(go_on(run, path, &config, &opened)?),
+            Some((run, path)) => Some(go_on(run, path, &opened)?),
             None => None,
         };
         let checkpoint = from.as_ref().or(start.as_ref());
-        agreement::check(ranks, &config, &*opened.task, checkpoint)?;
+        agreement::check(ranks, config, &*opened.task, checkpoint)?;
         let run = match resumed {
             Some((run, _)) => run,
             None => shared_folder(ranks, || RunDir::create(self.out.as_deref(), entry.name))?,
@@ -180,7 +201,7 @@ impl Train {
             run.path().display(),
         );
         let training = Training {
-            config: &config,
+            config,
             task,
             run: &run,
             device,
@@ -215,9 +236,9 @@ impl Train {
         train(training, from, interrupted, &mut observer)
     }
 
-    /// The configuration of a new run.
-    fn fresh(&self, entry: &TaskEntry) -> Result<Config> {
-        let mut config = self.choices.config(entry, &self.settings.all)?;
+    /// The configuration of a new run in so many environments: see [`Choices::config`].
+    fn fresh(&self, entry: &TaskEntry, envs: Option<usize>) -> Result<Config> {
+        let mut config = self.choices.config(entry, envs, &self.settings.all)?;
         config.seed = self.seed.unwrap_or(config.seed);
         if self.no_hit_reward {
             config.set("task.hit_reward", 0.0.into())?;
@@ -240,6 +261,7 @@ impl Train {
         if let Some(bonus) = self.success_bonus {
             config.set("task.success_bonus", bonus.into())?;
         }
+        self.limit(&mut config);
         Ok(config)
     }
 
@@ -254,6 +276,7 @@ impl Train {
         if let Some(folder) = &self.choices.data_folder {
             config.data_folder = Some(std::path::absolute(folder)?);
         }
+        self.limit(&mut config);
         Ok(config)
     }
 
@@ -275,17 +298,37 @@ impl Choices {
         Ok(Some(Checkpoint::load(&checkpoint_of(run)?)?))
     }
 
-    /// Preset, changed by the file, changed by `settings`, changed by the options.
-    pub fn config(&self, entry: &TaskEntry, settings: &[Setting]) -> Result<Config> {
-        let (preset, steers) = (self.preset.unwrap_or_default(), self.skills.is_some());
+    /// Opens a rank's share of a new training, whose configuration is made for a number of environments.
+    pub fn open(&self, entry: &TaskEntry, ranks: &Ranks, configure: Configure) -> Result<Opened> {
+        let grow = matches!(self.envs, Some(Envs::Auto));
+        Opened::new(entry, ranks, grow, configure)
+    }
+
+    /// Preset, changed by the file, changed by `settings`, changed by the options. In so many environments if that is said
+    /// here or by an option, to which the preset is scaled first.
+    pub fn config(
+        &self,
+        entry: &TaskEntry,
+        envs: Option<usize>,
+        settings: &[Setting],
+    ) -> Result<Config> {
+        let given = match self.envs {
+            Some(Envs::Number(envs)) => Some(envs),
+            Some(Envs::Auto) | None => None,
+        };
+        let base = Base {
+            preset: self.preset.unwrap_or_default(),
+            steers: self.skills.is_some(),
+            envs: envs.or(given),
+        };
         let mut config = match &self.config {
-            Some(path) => entry.config_from(path, preset, steers)?,
-            None => entry.config_of(preset, steers),
+            Some(path) => entry.config_from(path, base)?,
+            None => entry.config_of(base),
         };
         if self.preset.is_some_and(|asked| asked != config.preset) {
             return Err(Usage(format!(
-                "--preset {preset:?} and the configuration's preset {:?} differ: drop one",
-                config.preset
+                "--preset {:?} and the configuration's preset {:?} differ: drop one",
+                base.preset, config.preset
             ))
             .into());
         }
@@ -293,7 +336,7 @@ impl Choices {
             config.set(key, value.clone())?;
         }
         config.device = self.device.unwrap_or(config.device);
-        config.ppo.envs = self.envs.unwrap_or(config.ppo.envs);
+        config.ppo.envs = base.envs.unwrap_or(config.ppo.envs);
         config.steps = self.steps.unwrap_or(config.steps);
         if let Some(data) = self.data.clone().or(config.data.take()) {
             // A run must find its data again from any folder.
@@ -314,43 +357,6 @@ impl Choices {
     }
 }
 
-/// The device and the data of a configuration.
-pub struct Opened {
-    pub device: Device,
-    pub task: Box<dyn Task>,
-    /// The dimensions of the environments.
-    pub spec: EnvSpec,
-}
-
-impl Opened {
-    /// Checks a configuration and opens its device and data; what they turn out to be goes into it.
-    pub fn new(entry: &TaskEntry, config: &mut Config, ranks: &Ranks) -> Result<Opened> {
-        let spec = entry.check(config)?;
-        let share = EnvSpec {
-            envs: share_of(ranks, spec.envs)?,
-            ..spec
-        };
-        let device = Device::open(config.device)?;
-        check_fits(&device, &share, config.ppo.rollout_length)?;
-        if let Device::Cpu = device {
-            let bytes = memory::of_training(&share, config);
-            memory::check(bytes, "use a smaller --envs or ppo.rollout_length")?;
-        }
-        // A resumed run must not change its device because another has appeared.
-        config.device = device.choice();
-        let loaded = (entry.load)(config)?;
-        for note in loaded.notes {
-            tell!("note: {note}");
-        }
-        config.task.settings = loaded.task.settings();
-        Ok(Opened {
-            device,
-            task: loaded.task,
-            spec,
-        })
-    }
-}
-
 /// The configuration of a run that goes on with the task it has.
 fn same_task(run: &RunDir, entry: &TaskEntry) -> Result<Config> {
     let config = config_of(run)?;
@@ -363,18 +369,6 @@ fn same_task(run: &RunDir, entry: &TaskEntry) -> Result<Config> {
         .into());
     }
     Ok(config)
-}
-
-/// A rank's number of environments.
-fn share_of(ranks: &Ranks, envs: usize) -> Result<usize> {
-    let count = ranks.count();
-    match envs.is_multiple_of(count) && envs >= count {
-        true => Ok(envs / count),
-        false => Err(Usage(format!(
-            "{count} ranks cannot share {envs} environments: give a multiple of {count} as --envs"
-        ))
-        .into()),
-    }
 }
 
 /// A run that nobody else writes, and the checkpoint that it goes on from.
@@ -399,7 +393,8 @@ fn shared_folder(ranks: &Ranks, first: impl FnOnce() -> Result<RunDir>) -> Resul
 }
 
 /// The checkpoint that a run goes on from.
-fn go_on(run: &RunDir, path: &Path, config: &Config, opened: &Opened) -> Result<Checkpoint> {
+fn go_on(run: &RunDir, path: &Path, opened: &Opened) -> Result<Checkpoint> {
+    let config = &opened.config;
     let (name, fingerprint) = (&config.task.name, opened.task.fingerprint());
     let checkpoint = Checkpoint::load_for(path, name, &opened.spec, fingerprint)?;
     checkpoint.check_same(config)?;

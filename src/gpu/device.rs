@@ -3,13 +3,14 @@
 use super::Gpu;
 use super::no_adapter::NoAdapter;
 use serde::{Deserialize, Serialize};
+use std::fmt::{Display, Formatter};
 
 /// What the user requests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Choice {
-    /// A real GPU if there is one, else the native CPU path.
+    /// A real GPU if there is one, else the native CPU path; trainings take the quicker of them, as measured.
     #[default]
     Auto,
     /// The native CPU path: SIMD on all cores, networks by custom CPU kernels.
@@ -18,6 +19,17 @@ pub enum Choice {
     Gpu,
     /// Mesa's software Vulkan: the GPU path without a GPU, for tests.
     Lavapipe,
+}
+
+impl Display for Choice {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        f.write_str(match self {
+            Choice::Auto => "auto",
+            Choice::Cpu => "cpu",
+            Choice::Gpu => "gpu",
+            Choice::Lavapipe => "lavapipe",
+        })
+    }
 }
 
 /// An opened device.
@@ -47,6 +59,21 @@ impl Device {
             Choice::Lavapipe => Gpu::lavapipe().map(Device::from),
             Choice::Auto => Ok(Gpu::real().map_or(Device::Cpu, Device::from)),
         }
+    }
+
+    /// Opens every device that a choice leaves open: for `Choice::Auto` the CPU, and a real GPU if there is one.
+    ///
+    /// # Errors
+    /// There is no adapter of that kind.
+    pub fn all(choice: Choice) -> Result<Vec<Self>, NoAdapter> {
+        let mut all = vec![Self::open(match choice {
+            Choice::Auto => Choice::Cpu,
+            named => named,
+        })?];
+        if choice == Choice::Auto {
+            all.extend(Gpu::real().map(Device::from));
+        }
+        Ok(all)
     }
 
     /// The choice that opens this device again.

@@ -102,6 +102,17 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
+/// What a configuration begins with, before any key is changed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Base {
+    /// The complete set of choices.
+    pub preset: Preset,
+    /// Whether it is that of a policy that steers a low level, where the task has both.
+    pub steers: bool,
+    /// The number of environments that it is scaled to, if not its own: see [`Ppo::scaled_to`].
+    pub envs: Option<usize>,
+}
+
 /// The choices of a task's preset.
 pub struct TaskPreset {
     /// The table `[task]`, but for the name.
@@ -393,12 +404,15 @@ impl Config {
     /// The first key that decides over what is learned and has another value in the text of another
     /// run's `config.toml`.
     pub fn difference(&self, other: &str) -> Option<Difference> {
-        let decisive = |mut all: toml::Table| {
-            all.retain(|key, _| DECISIVE.contains(&key));
-            all
-        };
         let other = toml::from_str(other).unwrap_or_default();
         different(&decisive(table(self)), &decisive(other), "")
+    }
+
+    /// Checksum of the keys that decide over how long an update takes.
+    pub(super) fn workload(&self) -> u32 {
+        let mut keys = decisive(table(self));
+        keys.remove("seed");
+        crc32fast::hash(text(&keys).as_bytes())
     }
 
     /// Refuses rollouts in which an environment could be truncated more than once: there is room for
@@ -428,6 +442,11 @@ const DECISIVE: [&str; 7] = [
     "self_play",
     "task_weight",
 ];
+
+fn decisive(mut all: toml::Table) -> toml::Table {
+    all.retain(|key, _| DECISIVE.contains(&key));
+    all
+}
 
 /// Bytes of the longest configuration.
 const MAX_BYTES: u64 = 1 << 24;

@@ -2,6 +2,8 @@
 
 use super::config::Config;
 use crate::env::EnvSpec;
+use crate::gpu::Device;
+use crate::rl::rollout::check_fits;
 use anyhow::{Result, bail};
 use std::fs::read_to_string;
 
@@ -10,6 +12,21 @@ const NUMBER: u64 = 4;
 /// What an environment carries besides its rollout, about: the state of a simulated body, or of a hundred
 /// obstacles with their maps.
 pub const ENVIRONMENT: u64 = 4096;
+
+/// Refuses a training that a device cannot hold.
+///
+/// # Errors
+/// Says what is too large and by how much.
+pub fn check_training(device: &Device, spec: &EnvSpec, config: &Config) -> Result<()> {
+    check_fits(device, spec, config.ppo.rollout_length)?;
+    match device {
+        Device::Cpu => check(
+            of_training(spec, config),
+            "use a smaller --envs or ppo.rollout_length",
+        ),
+        Device::Gpu(_) => Ok(()),
+    }
+}
 
 /// Bytes that a training on the CPU needs besides its data, about: rollouts, the rows that are learned from, and
 /// the windows of a discriminator.

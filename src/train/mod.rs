@@ -7,6 +7,7 @@ pub mod agreement;
 pub mod anchors;
 pub mod body_episodes;
 pub mod body_policy;
+pub mod calibration;
 pub mod checkpoint;
 pub mod comparison;
 pub mod config;

@@ -5,7 +5,7 @@
 //! loaded.
 
 use super::body_episodes::BodyEpisodes;
-use super::config::{Config, ConfigError, Preset, TaskPreset};
+use super::config::{Base, Config, ConfigError, Preset, TaskPreset};
 use super::evaluation::{EvalOptions, EvalReport, Evaluation};
 #[cfg(feature = "report")]
 use super::figures::draw_curve;
@@ -69,34 +69,43 @@ pub struct Steering {
 impl TaskEntry {
     /// A preset.
     pub fn config(&self, preset: Preset) -> Config {
-        self.config_of(preset, false)
+        let base = Base {
+            preset,
+            ..Base::default()
+        };
+        self.config_of(base)
     }
 
-    /// A preset for a policy that acts itself, or for one that steers a low level.
-    pub fn config_of(&self, preset: Preset, steers: bool) -> Config {
-        Config::preset(self.name, preset, self.choices(preset, steers))
+    /// What a configuration begins with.
+    pub fn config_of(&self, base: Base) -> Config {
+        Config::preset(self.name, base.preset, self.choices(base))
     }
 
-    /// A preset changed by the keys that a TOML file names. The policy steers a low level if the file names one,
-    /// or if it is said here.
+    /// The same changed by the keys that a TOML file names. The policy steers a low level if the file names one, or if
+    /// it is said here.
     ///
     /// # Errors
     /// See [`ConfigError`].
-    pub fn config_from(
-        &self,
-        path: &Path,
-        preset: Preset,
-        steers: bool,
-    ) -> Result<Config, ConfigError> {
-        let choices = |preset, named| self.choices(preset, steers || named);
-        Config::from_file(path, self.name, preset, &choices)
+    pub fn config_from(&self, path: &Path, base: Base) -> Result<Config, ConfigError> {
+        let choices = |preset, named| {
+            self.choices(Base {
+                preset,
+                steers: base.steers || named,
+                ..base
+            })
+        };
+        Config::from_file(path, self.name, base.preset, &choices)
     }
 
-    fn choices(&self, preset: Preset, steers: bool) -> TaskPreset {
-        match &self.steering {
-            Some(steering) if steers => (steering.preset)(preset),
-            _ => (self.preset)(preset),
+    fn choices(&self, base: Base) -> TaskPreset {
+        let mut chosen = match &self.steering {
+            Some(steering) if base.steers => (steering.preset)(base.preset),
+            _ => (self.preset)(base.preset),
+        };
+        if let Some(envs) = base.envs {
+            chosen.ppo = chosen.ppo.scaled_to(envs);
         }
+        chosen
     }
 
     /// Refuses what cannot work, before anything is opened or written. Returns the dimensions of the

@@ -172,8 +172,8 @@ fn too_many_environments_are_refused_before_anything_is_made() {
     let place = Place::with_data();
     let before = place.list();
     for words in [
-        "train plane --data small.footwork --device cpu --envs 524288 --steps 1 --out run",
-        "train imitate --device cpu --envs 262144 --steps 1 --out run",
+        "train plane --data small.footwork --device cpu --envs 1048576 --steps 1 --out run",
+        "train imitate --device cpu --envs 1048576 --steps 1 --out run",
         "sim --envs 1048576 --seconds 0.01 --device cpu",
     ] {
         let mut command = std::process::Command::new("sh");

@@ -2,6 +2,7 @@
 
 #[cfg(target_os = "linux")]
 mod accidents;
+mod auto;
 mod bench;
 mod boxing;
 #[cfg(unix)]

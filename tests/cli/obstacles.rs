@@ -221,7 +221,7 @@ fn an_ablation_is_written_down_and_goes_on_where_it_was() {
 fn a_batch_that_a_device_cannot_hold_is_refused() {
     let place = place();
     place.refused(
-        "train obstacles --data small.footwork --device lavapipe --envs 4096 --out run",
+        "train obstacles --data small.footwork --device lavapipe --set ppo.envs=4096 --out run",
         1,
         &["observations of an update take 265 MiB", "smaller --envs"],
     );

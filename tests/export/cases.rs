@@ -20,7 +20,7 @@ use footwork::physics::scenes;
 use footwork::rl::ase::{LowLevel, STEPS_PER_DECISION};
 use footwork::train::body_episodes::BodyEpisodes;
 use footwork::train::checkpoint::{Checkpoint, Header};
-use footwork::train::config::{Config, Preset};
+use footwork::train::config::{Base, Config, Preset};
 use footwork::train::locomotion::Locomotion;
 use footwork::train::task::Task;
 use footwork::train::tasks::{REGISTRY, find};
@@ -295,7 +295,10 @@ impl Files {
         // Whether a low level is steered decides on the preset.
         let mut probe = entry.config(Preset::Fast);
         change(&mut probe);
-        let mut config = entry.config_of(Preset::Fast, probe.skills.is_some());
+        let mut config = entry.config_of(Base {
+            steers: probe.skills.is_some(),
+            ..Base::default()
+        });
         config.data = (task != "stand").then(|| self.path("walk.bvh"));
         config.ppo.network = network(task);
         change(&mut config);

@@ -127,7 +127,7 @@ fn checkpoint() {
 fn configuration() {
     fuzz("configuration", "toml", seeds::configuration(), |path| {
         for entry in &footwork::train::tasks::REGISTRY {
-            let config = entry.config_from(path, footwork::train::config::Preset::Fast, false);
+            let config = entry.config_from(path, footwork::train::config::Base::default());
             let _ = config.map(|config| entry.check(&config));
         }
     });

@@ -1,12 +1,13 @@
 //! Proximal policy optimisation (Schulman et al. 2017).
 //!
 //! [`Ppo`] holds what may be chosen, [`loss`] is the objective of a sample, [`learner`] lets the
-//! policy act and improves it.
+//! policy act and improves it, `scaling` is the rule for other numbers of environments.
 
 mod adopt_actor;
 mod batch;
 pub mod learner;
 pub mod loss;
+mod scaling;
 
 use crate::nn::network::NetworkConfig;
 pub use learner::PpoLearner;

@@ -12,7 +12,7 @@ pub mod skills;
 pub mod stand;
 pub mod track;
 
-use super::config::{Config, ConfigError, Preset, nearest};
+use super::config::{Base, Config, ConfigError, nearest};
 use super::run_dir::RunDir;
 use super::task::TaskEntry;
 
@@ -47,5 +47,5 @@ pub fn find(name: &str) -> Result<&'static TaskEntry, ConfigError> {
 /// See [`ConfigError`].
 pub fn config_of(run: &RunDir) -> Result<Config, ConfigError> {
     let path = run.config_path();
-    find(&Config::task_of(&path)?)?.config_from(&path, Preset::default(), false)
+    find(&Config::task_of(&path)?)?.config_from(&path, Base::default())
 }

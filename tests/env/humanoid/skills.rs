@@ -23,11 +23,18 @@ use footwork::rl::ase::{
 };
 use footwork::rl::gae::RewardSource;
 use footwork::rl::ppo::PpoLearner;
-use footwork::train::config::Preset;
+use footwork::train::config::{Base, Preset};
 use footwork::train::low_level;
 use footwork::train::tasks::find;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock};
+
+/// The preset of a policy that steers a low level.
+const STEERS: Base = Base {
+    preset: Preset::Fast,
+    steers: true,
+    envs: None,
+};
 
 static LIBRARY: LazyLock<Arc<MotionLibrary>> = LazyLock::new(|| {
     let model = Arc::new(scenes::humanoid());
@@ -341,7 +348,7 @@ fn a_driver_holds_latents_for_a_decision() {
     let device = Device::Cpu;
     let mut envs = steered(&device, 0..1, 10.0);
     let spec = *envs.spec();
-    let config = find("punch").unwrap().config_of(Preset::Fast, true);
+    let config = find("punch").unwrap().config_of(STEERS);
     let network = &config.ppo.network;
     let mut policy = Policy::new(network, &spec.observation, spec.action, 1).unwrap();
     policy.parameters = policy.networks().init(1, -1.0, &[0.3; LATENT]);
@@ -390,7 +397,7 @@ fn a_frozen_low_level_stays_as_it_is() {
         .unwrap()
     };
     let mut envs = open();
-    let mut ppo = find("punch").unwrap().config_of(Preset::Fast, true).ppo;
+    let mut ppo = find("punch").unwrap().config_of(STEERS).ppo;
     (ppo.rollout_length, ppo.minibatch_size) = (4, 16);
     let rewards = [(RewardSource::Task, 0.9), (RewardSource::Style, 0.1)];
     let mut learner = PpoLearner::with_rewards(&ppo, &envs, &device, 1, &rewards).unwrap();

@@ -1,0 +1,45 @@
+//! The speed of whole updates: environments, networks and learning.
+
+use crate::gpu::Device;
+use crate::ranks::Ranks;
+use crate::train::config::Config;
+use crate::train::task::Task;
+use anyhow::Result;
+use std::time::Instant;
+
+/// Seconds that updates are measured for, after a first one that compiles and allocates.
+const MEASURED_S: f64 = 1.0;
+/// Seconds of a first update beside which all that hardly counts: it is the measurement.
+const LONG_S: f64 = 5.0;
+
+/// Environment steps a second of a training that has just begun.
+///
+/// # Errors
+/// The device cannot hold it, or was lost.
+pub fn steps_per_s(task: &dyn Task, config: &Config, device: &Device) -> Result<f64> {
+    // On a thread of the pool, as a training is.
+    rayon::scope(|_| {
+        let mut envs = task.open(device, &Ranks::alone(), config.ppo.envs, config.seed)?;
+        let mut learner = task.learner(config, &envs, device)?;
+        let mut steps = 0;
+        let mut update = || -> Result<()> {
+            learner.iterate(&mut envs, steps)?;
+            steps += config.batch();
+            device.sync()
+        };
+        let speed = |updates: u64, since: Instant| {
+            (updates * config.batch()) as f64 / since.elapsed().as_secs_f64()
+        };
+        let begin = Instant::now();
+        update()?;
+        if begin.elapsed().as_secs_f64() > LONG_S {
+            return Ok(speed(1, begin));
+        }
+        let (begin, mut updates) = (Instant::now(), 0);
+        while begin.elapsed().as_secs_f64() < MEASURED_S {
+            update()?;
+            updates += 1;
+        }
+        Ok(speed(updates, begin))
+    })
+}
