@@ -7,10 +7,8 @@ use crate::train::task::Task;
 use anyhow::Result;
 use std::time::Instant;
 
-/// Seconds that updates are measured for, after a first one that compiles and allocates.
+/// Seconds that updates are measured for, after a first one: on a GPU that compiles, which may take longer than they do.
 const MEASURED_S: f64 = 1.0;
-/// Seconds of a first update beside which all that hardly counts: it is the measurement.
-const LONG_S: f64 = 5.0;
 
 /// Environment steps a second of a training that has just begun.
 ///
@@ -27,19 +25,12 @@ pub fn steps_per_s(task: &dyn Task, config: &Config, device: &Device) -> Result<
             steps += config.batch();
             device.sync()
         };
-        let speed = |updates: u64, since: Instant| {
-            (updates * config.batch()) as f64 / since.elapsed().as_secs_f64()
-        };
-        let begin = Instant::now();
         update()?;
-        if begin.elapsed().as_secs_f64() > LONG_S {
-            return Ok(speed(1, begin));
-        }
         let (begin, mut updates) = (Instant::now(), 0);
         while begin.elapsed().as_secs_f64() < MEASURED_S {
             update()?;
             updates += 1;
         }
-        Ok(speed(updates, begin))
+        Ok((updates * config.batch()) as f64 / begin.elapsed().as_secs_f64())
     })
 }
