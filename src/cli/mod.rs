@@ -36,11 +36,8 @@ mod web;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-use footwork::motion::error::MotionError;
 use footwork::ranks::Ranks;
-use footwork::train::config::ConfigError;
-use footwork::train::task::Unsupported;
-pub use usage::Usage;
+pub use usage::{Usage, exit_code};
 
 /// Trains character controllers: motion capture in, a policy that moves a full-body character out.
 #[derive(Parser)]
@@ -122,15 +119,5 @@ impl Command {
             self,
             Command::Train(_) | Command::Ablate(_) | Command::Sweep(_) | Command::Compare(_)
         )
-    }
-}
-
-/// 2 for mistakes of usage, 1 for everything else.
-pub fn exit_code(error: &anyhow::Error) -> u8 {
-    let roles = matches!(error.downcast_ref(), Some(MotionError::RolesFile { .. }));
-    let usage = error.is::<Usage>() || error.is::<ConfigError>() || error.is::<Unsupported>();
-    match usage || roles {
-        true => 2,
-        false => 1,
     }
 }

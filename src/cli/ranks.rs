@@ -1,9 +1,9 @@
 //! The ranks that `mpiexec` has started this program as.
 
 #[cfg(not(feature = "mpi"))]
-use super::Usage;
+use super::usage::Usage;
 #[cfg(feature = "mpi")]
-use super::{exit_code, say};
+use super::{say, usage::exit_code};
 use anyhow::Result;
 use footwork::ranks::Ranks;
 

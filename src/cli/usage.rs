@@ -2,6 +2,9 @@
 
 #[cfg(feature = "report")]
 use anyhow::Result;
+use footwork::motion::error::MotionError;
+use footwork::train::config::ConfigError;
+use footwork::train::task::Unsupported;
 #[cfg(feature = "report")]
 use std::path::Path;
 
@@ -9,6 +12,16 @@ use std::path::Path;
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct Usage(pub String);
+
+/// 2 for mistakes of usage, 1 for everything else.
+pub fn exit_code(error: &anyhow::Error) -> u8 {
+    let roles = matches!(error.downcast_ref(), Some(MotionError::RolesFile { .. }));
+    let usage = error.is::<Usage>() || error.is::<ConfigError>() || error.is::<Unsupported>();
+    match usage || roles {
+        true => 2,
+        false => 1,
+    }
+}
 
 /// Refuses impossible files before minutes of work are lost.
 #[cfg(feature = "report")]
