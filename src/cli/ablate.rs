@@ -1,7 +1,7 @@
 //! `footwork ablate`.
 
 use super::Usage;
-use super::opened::Opened;
+use super::opened::{Opened, Shared};
 use super::setting::Settings;
 use super::train::{Choices, on_interrupt};
 use super::trainings::Trainings;
@@ -63,7 +63,7 @@ impl Ablate {
             device,
             task,
             ..
-        } = choices.open(entry, &Ranks::alone(), &configure)?;
+        } = choices.open(entry, ranks, Shared::Trainings, &configure)?;
         let out = self.out.unwrap_or_else(|| ablation.folder.into());
         let start = self.choices.start()?;
         let comparison = Comparison {

@@ -1,7 +1,7 @@
 //! `footwork compare`.
 
 use super::Usage;
-use super::opened::Opened;
+use super::opened::{Opened, Shared};
 use super::setting::Settings;
 use super::train::{Choices, on_interrupt};
 use super::trainings::Trainings;
@@ -47,7 +47,7 @@ impl Compare {
         };
         let interrupted = on_interrupt()?;
         let start = self.choices.start()?;
-        let [direct, steered] = self.open(entry)?;
+        let [direct, steered] = self.open(entry, ranks)?;
         let out = format!("runs/compare-{}", entry.name).into();
         let out = self.out.unwrap_or(out);
         let comparison = Comparison {
@@ -83,19 +83,19 @@ impl Compare {
 
     /// The training of a policy that acts itself, and on the same device that of one which steers the low level: as many
     /// steps of the body.
-    fn open(&self, entry: &TaskEntry) -> Result<[Opened; 2]> {
+    fn open(&self, entry: &TaskEntry, ranks: &Ranks) -> Result<[Opened; 2]> {
         if self.choices.skills.is_none() {
             let why = "--skills RUN names the low level that is to be compared with none";
             return Err(Usage(why.into()).into());
         }
         let mut acting = self.choices.clone();
         acting.skills = None;
-        let (alone, settings) = (Ranks::alone(), &self.settings.all);
+        let (settings, trainings) = (&self.settings.all, Shared::Trainings);
         let configure = |envs| acting.config(entry, envs, settings);
-        let direct = acting.open(entry, &alone, &configure)?;
+        let direct = acting.open(entry, ranks, trainings, &configure)?;
         let mut steering = self.choices.clone();
         steering.device = Some(direct.config.device);
-        let steered = steering.open(entry, &alone, &|envs| {
+        let steered = steering.open(entry, ranks, trainings, &|envs| {
             let mut config = steering.config(entry, envs, settings)?;
             config.steps = direct.config.steps.div_ceil(STEPS_PER_DECISION as u64);
             Ok(config)

@@ -83,16 +83,15 @@ enum Command {
 
 pub fn run() -> Result<()> {
     let command = Cli::parse().command;
-    ranks::together(|ranks| command.run(ranks))?;
+    match command.is_for_ranks() {
+        true => ranks::together(|ranks| command.run(ranks))?,
+        false => ranks::refuse_several().and_then(|()| command.run(&Ranks::alone()))?,
+    }
     say::printed()
 }
 
 impl Command {
     fn run(self, ranks: &Ranks) -> Result<()> {
-        if !ranks.is_alone() && !self.is_for_ranks() {
-            let why = "this is done by one process: leave out mpiexec, which is for trainings";
-            return Err(Usage(why.into()).into());
-        }
         match self {
             Command::Train(train) => train.run(ranks),
             Command::Ablate(ablate) => ablate.run(ranks),

@@ -6,6 +6,7 @@ use anyhow::{Result, bail};
 use footwork::env::EnvSpec;
 use footwork::gpu::{Choice, Device};
 use footwork::ranks::Ranks;
+use footwork::rl::ppo::Ppo;
 use footwork::train::calibration::{Calibration, Configure, Speed};
 use footwork::train::config::{Base, Config};
 use footwork::train::memory::check_training;
@@ -25,7 +26,7 @@ impl Opened {
     pub fn resumed(entry: &TaskEntry, ranks: &Ranks, config: Config) -> Result<Opened> {
         let spec = entry.check(&config)?;
         let device = Device::open(config.device)?;
-        check_training(&device, &share(ranks, spec)?, &config)?;
+        check_training(&device, &share(ranks.count(), spec)?, &config)?;
         let task = load(entry, &config)?;
         Opened::of(entry, config, device, task)
     }
@@ -35,6 +36,7 @@ impl Opened {
     pub fn new(
         entry: &TaskEntry,
         ranks: &Ranks,
+        shared: Shared,
         grow: bool,
         configure: Configure,
     ) -> Result<Opened> {
@@ -42,16 +44,26 @@ impl Opened {
         let spec = entry.check(&config)?;
         let mut devices = Device::all(config.device)?;
         let measures = grow || devices.len() > 1;
+        let shares = match shared {
+            Shared::Environments => ranks.count(),
+            Shared::Trainings => 1,
+        };
+        let own = share(shares, spec)?;
         if !measures {
-            check_training(&devices[0], &share(ranks, spec)?, &config)?;
+            check_training(&devices[0], &own, &config)?;
         }
         let task = load(entry, &config)?;
         if measures {
-            let measure = || measured(entry, &*task, &devices, grow, configure);
+            // As it would be in one rank's environments.
+            let of_a_rank = |envs: Option<usize>| configure(Some(envs.unwrap_or(own.envs)));
+            let configure_one: Configure = match shares {
+                1 => configure,
+                _ => &of_a_rank,
+            };
+            let measure = || measured(entry, &*task, &devices, grow, configure_one);
             let chosen = chosen(ranks, &devices, measure)?;
-            config = configure(grow.then_some(chosen.envs * ranks.count()))?;
+            config = configure(grow.then_some(chosen.envs * shares))?;
             config.device = chosen.device;
-            share(ranks, entry.check(&config)?)?;
             devices.retain(|device| device.choice() == config.device);
         }
         tell_scaled(entry, &config);
@@ -77,9 +89,18 @@ impl Opened {
     }
 }
 
-/// The environments of a rank.
-fn share(ranks: &Ranks, spec: EnvSpec) -> Result<EnvSpec> {
-    let (count, envs) = (ranks.count(), spec.envs);
+/// What ranks share out among them.
+#[derive(Clone, Copy)]
+pub enum Shared {
+    /// The environments of one training.
+    Environments,
+    /// Whole trainings.
+    Trainings,
+}
+
+/// The environments of one of so many ranks.
+fn share(count: usize, spec: EnvSpec) -> Result<EnvSpec> {
+    let envs = spec.envs;
     if !envs.is_multiple_of(count) {
         return Err(Usage(format!(
             "{count} ranks cannot share {envs} environments: give a multiple of {count} as --envs"
@@ -174,7 +195,16 @@ fn tell_scaled(entry: &TaskEntry, config: &Config) {
         envs: None,
     };
     let (preset, ppo) = (entry.config_of(base).ppo, &config.ppo);
-    if ppo.envs > preset.envs {
+    let scaled = |ppo: &Ppo| {
+        let Ppo {
+            rollout_length,
+            minibatch_size,
+            learning_rate,
+            ..
+        } = *ppo;
+        (rollout_length, minibatch_size, learning_rate)
+    };
+    if ppo.envs > preset.envs && scaled(ppo) != scaled(&preset) {
         tell!(
             "{} environments take rollouts of {} steps, minibatches of {} and a learning rate of {:.2e} (the preset's {}: {}, {}, {:.2e})",
             ppo.envs,

@@ -2,7 +2,7 @@
 
 use super::Usage;
 use super::grid::{SweptKey, combinations, name, swept_key};
-use super::opened::Opened;
+use super::opened::{Opened, Shared};
 use super::setting::Setting;
 use super::train::{Choices, names, on_interrupt};
 use super::trainings::Trainings;
@@ -70,7 +70,7 @@ impl Sweep {
             device,
             task,
             ..
-        } = choices.open(entry, &Ranks::alone(), &configure)?;
+        } = choices.open(entry, ranks, Shared::Trainings, &configure)?;
         let out = format!("runs/{}-sweep", entry.name).into();
         let comparison = Comparison {
             title: "sweep",
@@ -99,6 +99,10 @@ impl Sweep {
             if key == "seed" {
                 let why =
                     "--set seed: a sweep trains from the seeds 1, 2, ..; --seeds says how many";
+                return Err(Usage(why.into()));
+            }
+            if key == "ppo.envs" && self.choices.grows() {
+                let why = "--set ppo.envs and --envs auto: give one of them";
                 return Err(Usage(why.into()));
             }
             if values.len() > 1 && is_shared(key) {

@@ -3,7 +3,7 @@
 use super::Usage;
 #[cfg(feature = "viewer")]
 use super::filming::Filming;
-use super::opened::Opened;
+use super::opened::{Opened, Shared};
 use super::progress::Progress;
 use super::run::{Moved, locate};
 use super::say::{say, tell};
@@ -172,7 +172,8 @@ impl Train {
             Some((run, _)) => Opened::resumed(entry, ranks, self.same(run, entry)?)?,
             None => {
                 let configure = |envs| self.fresh(entry, envs);
-                self.choices.open(entry, ranks, &configure)?
+                self.choices
+                    .open(entry, ranks, Shared::Environments, &configure)?
             }
         };
         let config = &opened.config;
@@ -298,10 +299,20 @@ impl Choices {
         Ok(Some(Checkpoint::load(&checkpoint_of(run)?)?))
     }
 
-    /// Opens a rank's share of a new training, whose configuration is made for a number of environments.
-    pub fn open(&self, entry: &TaskEntry, ranks: &Ranks, configure: Configure) -> Result<Opened> {
-        let grow = matches!(self.envs, Some(Envs::Auto));
-        Opened::new(entry, ranks, grow, configure)
+    /// Whether the number of environments is to be found by measuring.
+    pub fn grows(&self) -> bool {
+        matches!(self.envs, Some(Envs::Auto))
+    }
+
+    /// Opens a new training, whose configuration is made for a number of environments.
+    pub fn open(
+        &self,
+        entry: &TaskEntry,
+        ranks: &Ranks,
+        shared: Shared,
+        configure: Configure,
+    ) -> Result<Opened> {
+        Opened::new(entry, ranks, shared, self.grows(), configure)
     }
 
     /// Preset, changed by the file, changed by `settings`, changed by the options. In so many environments if that is said

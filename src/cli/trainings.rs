@@ -6,7 +6,8 @@ use super::say::{say, show};
 use anyhow::{Result, bail};
 use clap::Args;
 use footwork::gpu::Device;
-use footwork::train::comparison::Comparison;
+use footwork::train::agreement;
+use footwork::train::comparison::{Comparison, Contestant};
 use footwork::train::memory;
 use std::sync::atomic::AtomicBool;
 
@@ -46,6 +47,15 @@ impl Trainings {
     pub fn run(&self, comparison: &Comparison, interrupted: &AtomicBool) -> Result<()> {
         let jobs = self.jobs.min(comparison.runs().len());
         check_memory(comparison, jobs)?;
+        for Contestant {
+            config,
+            task,
+            start,
+            ..
+        } in &comparison.contestants
+        {
+            agreement::check(comparison.ranks, config, &**task, *start)?;
+        }
         let mut progress = Progress::several(jobs);
         let outcomes = comparison.run(interrupted, &mut progress)?;
         drop(progress);

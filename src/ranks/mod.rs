@@ -9,7 +9,7 @@ mod communicator;
 mod mpi;
 
 use crate::gpu::{Array, Device};
-use anyhow::Result;
+use anyhow::{Result, bail};
 pub use communicator::{Communicator, Rank};
 #[cfg(feature = "mpi")]
 pub use mpi::Mpi;
@@ -140,6 +140,24 @@ impl Ranks {
             bytes
         };
         (0..self.rank.of).map(sent).collect()
+    }
+
+    /// What went well on all ranks. Where it did not on one, all get its error.
+    ///
+    /// # Errors
+    /// That of the first rank that has one.
+    pub fn all_or_none<T>(&self, own: Result<T>) -> Result<T> {
+        if self.is_alone() {
+            return own;
+        }
+        let error = own.as_ref().err().map(|error| format!("{error:#}"));
+        let errors = self.gather(error.unwrap_or_default().as_bytes());
+        let failed = errors.iter().position(|error| !error.is_empty());
+        match (failed, own) {
+            (None, own) => own,
+            (Some(rank), Err(own)) if rank == self.rank.number => Err(own),
+            (Some(rank), _) => bail!("rank {rank}: {}", String::from_utf8_lossy(&errors[rank])),
+        }
     }
 
     /// Seconds that this rank has spent in communication, waiting for others included.

@@ -31,9 +31,8 @@ impl Mpi {
     pub fn init() -> Result<Mpi, ferrompi::Error> {
         let library = ferrompi::Mpi::init_thread(ThreadLevel::Serialized)?;
         let world = library.world();
-        let neighbours = world.split_shared()?.size() as usize;
         Ok(Mpi {
-            cores: cores_of_a_rank(neighbours),
+            cores: cores_of_a_rank(&world.split_shared()?)?,
             world,
             _library: library,
         })
@@ -50,6 +49,11 @@ impl Mpi {
         })
     }
 
+    /// How many ranks there are.
+    pub fn count(&self) -> usize {
+        self.world.size() as usize
+    }
+
     /// Cores for this rank, if its machine's are shared out among the ranks there.
     pub fn cores(&self) -> usize {
         self.cores
@@ -61,15 +65,18 @@ impl Mpi {
     }
 }
 
-/// Of a machine with so many ranks. A rank that is bound to some cores has those for itself.
-fn cores_of_a_rank(neighbours: usize) -> usize {
-    let own = std::thread::available_parallelism().map_or(1, usize::from);
-    let cpus = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let all = cpus.lines().filter(|line| line.starts_with("processor"));
-    match own < all.count() {
-        true => own,
-        false => (own / neighbours.max(1)).max(1),
-    }
+/// The cores that a rank may use, divided by the ranks of its machine that may use the same.
+fn cores_of_a_rank(machine: &ferrompi::Communicator) -> Result<usize, ferrompi::Error> {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let allowed = status
+        .lines()
+        .find(|line| line.starts_with("Cpus_allowed:"));
+    let own = [crc32fast::hash(allowed.unwrap_or_default().as_bytes())];
+    let mut all = vec![0; machine.size() as usize];
+    machine.allgather(&own, &mut all)?;
+    let sharing = all.iter().filter(|other| **other == own[0]).count();
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    Ok((cores / sharing.max(1)).max(1))
 }
 
 impl World {

@@ -4,7 +4,7 @@ use super::checkpoint::Checkpoint;
 use super::config::Config;
 use super::task::Task;
 use crate::ranks::Ranks;
-use anyhow::{Result, bail};
+use anyhow::{Result, anyhow};
 
 /// Refuses to train with a rank that has another program, other choices, other data or another checkpoint than the
 /// first.
@@ -35,13 +35,13 @@ pub fn check(
     ];
     let mut first: Vec<u8> = own.iter().flat_map(|(_, own)| own.to_le_bytes()).collect();
     ranks.broadcast(&mut first);
-    for ((what, own), first) in own.iter().zip(first.chunks_exact(4)) {
-        if own.to_le_bytes() != first {
-            bail!(
-                "rank {} has another {what} than the first: give all of them the same files and options",
-                ranks.rank().number
-            );
-        }
-    }
-    Ok(())
+    let mut pairs = own.iter().zip(first.chunks_exact(4));
+    let other = pairs.find(|((_, own), first)| own.to_le_bytes() != *first);
+    // None goes on, to write something, before all are asked.
+    ranks.all_or_none(match other {
+        None => Ok(()),
+        Some(((what, _), _)) => Err(anyhow!(
+            "another {what} than the first rank's: give all of them the same files and options"
+        )),
+    })
 }

@@ -137,8 +137,13 @@ impl<'a> Loop<'a> {
             ranks,
             start,
         } = training;
-        let mut envs = task.open(device, ranks, config.ppo.envs, config.seed)?;
-        let mut learner = task.learner(config, &envs, device)?;
+        let opened = || -> Result<_> {
+            let envs = task.open(device, ranks, config.ppo.envs, config.seed)?;
+            let learner = task.learner(config, &envs, device)?;
+            Ok((envs, learner))
+        };
+        // Nothing is written before all ranks could begin.
+        let (mut envs, mut learner) = ranks.all_or_none(opened())?;
         let (mut steps, mut earlier_s, mut state) = (0, 0.0, TrainerState::default());
         let mut rows = Vec::new();
         let fresh = from.is_none();

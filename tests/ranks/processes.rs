@@ -92,7 +92,7 @@ fn ranks_that_cannot_train_together_are_refused() {
     refused(
         &mut other,
         1,
-        "rank 1 has another configuration than the first",
+        "rank 1: another configuration than the first rank's",
     );
     let data = folder.path().join("data");
     std::fs::create_dir(&data).unwrap();

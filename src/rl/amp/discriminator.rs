@@ -15,7 +15,7 @@ use crate::nn::observation::ObservationSpec;
 use crate::nn::{Adam, Engine, EngineSize, Rows, RunningMeanStd, rows};
 use crate::ranks::Ranks;
 use crate::rl::rollout::Rollout;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use std::sync::Arc;
 
 /// First random stream of what a gradient step sees: recorded windows, fresh ones, replayed ones.
@@ -71,6 +71,12 @@ impl Discriminator {
             replay_per_update: ranks.portion(config.replay_per_update),
             ..config.clone()
         };
+        if config.replay_capacity < ranks.count() {
+            bail!(
+                "amp.replay_capacity has to be at least the number of ranks, {}",
+                ranks.count()
+            );
+        }
         let dim = demonstrations.dim;
         let network = network(&config, dim, latents)?;
         let parameters = network.span().len();

@@ -50,8 +50,6 @@ pub struct Calibrated {
     pub chosen: Speed,
     /// Why.
     pub reason: String,
-    /// The configuration in so many environments on that device.
-    pub config: Config,
 }
 
 impl Calibration<'_> {
@@ -73,13 +71,10 @@ impl Calibration<'_> {
         let Some(chosen) = choose(&speeds) else {
             bail!("none of the devices can do this: try fewer environments");
         };
-        let mut config = self.config(chosen.envs)?;
-        config.device = chosen.device;
         Ok(Calibrated {
             reason: reason(chosen, &speeds),
             speeds,
             chosen,
-            config,
         })
     }
 

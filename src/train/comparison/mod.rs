@@ -66,6 +66,9 @@ pub struct ComparedRun {
     pub contestant: usize,
 }
 
+/// Trainings that failed, and why.
+type Failures = BTreeMap<ComparedRun, String>;
+
 /// What came of a training.
 pub struct Outcome {
     /// The training.
@@ -104,7 +107,7 @@ impl Comparison<'_> {
     /// is its outcome and leaves the others alone.
     ///
     /// # Errors
-    /// See [`Comparison::train_one`]; the trainings under way are saved and stopped.
+    /// See [`Comparison::train_one`]; this rank's trainings under way are saved and stopped.
     pub fn run<O: Observer + Send>(
         &self,
         interrupted: &AtomicBool,
@@ -115,20 +118,40 @@ impl Comparison<'_> {
         let rank = self.ranks.rank();
         let own = all.iter().copied().skip(rank.number).step_by(rank.of);
         let own: Vec<ComparedRun> = own.collect();
-        let mut outcomes = self.do_runs(&own, interrupted, observers)?;
+        let mut outcomes = self.do_runs(&own, &Failures::new(), interrupted, observers)?;
         let mut complete = !self.ranks.any(outcomes.len() < own.len());
+        let failures = self.failures(&outcomes)?;
         if complete && !self.ranks.is_alone() && self.ranks.is_first() {
             // Those that others have done are at their end.
-            outcomes = self.do_runs(&all, interrupted, observers)?;
+            outcomes = self.do_runs(&all, &failures, interrupted, observers)?;
             complete = outcomes.len() == all.len();
         }
         Ok(complete.then_some(outcomes))
     }
 
-    /// Does some trainings, as many at once as there are observers.
+    /// What the trainings of all ranks failed of.
+    fn failures(&self, own: &[Outcome]) -> Result<Failures> {
+        let failed = own.iter().filter_map(|outcome| {
+            let why = outcome.result.as_ref().err()?;
+            Some((outcome.run.seed, outcome.run.contestant, why))
+        });
+        let own = serde_json::to_vec(&failed.collect::<Vec<_>>())?;
+        let mut all = Failures::new();
+        for sent in self.ranks.gather(&own) {
+            let failed: Vec<(u32, usize, String)> = serde_json::from_slice(&sent)?;
+            all.extend(failed.into_iter().map(|(seed, contestant, why)| {
+                let run = ComparedRun { seed, contestant };
+                (run, why)
+            }));
+        }
+        Ok(all)
+    }
+
+    /// Does some trainings, as many at once as there are observers, but for those that have failed elsewhere.
     fn do_runs<O: Observer + Send>(
         &self,
         runs: &[ComparedRun],
+        failures: &Failures,
         interrupted: &AtomicBool,
         observers: &mut [O],
     ) -> Result<Vec<Outcome>> {
@@ -138,7 +161,7 @@ impl Comparison<'_> {
             let (sender, receiver) = channel();
             for (observer, pool) in observers.iter_mut().zip(&pools) {
                 let (next, sender) = (&next, sender.clone());
-                let work = move || self.work(runs, next, interrupted, observer, &sender);
+                let work = move || self.work(runs, failures, next, interrupted, observer, &sender);
                 scope.spawn(move || pool.install(work));
             }
             drop(sender);
@@ -162,13 +185,20 @@ impl Comparison<'_> {
     fn work(
         &self,
         runs: &[ComparedRun],
+        failures: &Failures,
         next: &AtomicUsize,
         interrupted: &AtomicBool,
         observer: &mut (dyn Observer + Send),
         outcomes: &Sender<Result<Outcome>>,
     ) {
         while let Some(&run) = runs.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let outcome = self.train_one(run, interrupted, observer).transpose();
+            let outcome = match failures.get(&run) {
+                Some(why) => Some(Ok(Outcome {
+                    run,
+                    result: Err(why.clone()),
+                })),
+                None => self.train_one(run, interrupted, observer).transpose(),
+            };
             let Some(outcome) = outcome else { return };
             if outcomes.send(outcome).is_err() {
                 return;
