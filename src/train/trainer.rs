@@ -119,6 +119,8 @@ struct Loop<'a> {
     /// Seconds before this process, and its start.
     earlier_s: f64,
     start: Instant,
+    /// Seconds of communication before that.
+    talked_s: f64,
     /// When `last` was written.
     saved: Instant,
 }
@@ -182,6 +184,7 @@ impl<'a> Loop<'a> {
             steps,
             earlier_s,
             start: Instant::now(),
+            talked_s: ranks.seconds(),
             saved: Instant::now(),
         };
         // From here on a run that is killed can go on: there is no run without a checkpoint.
@@ -418,7 +421,8 @@ impl<'a> Loop<'a> {
             device: device.name(),
             seed: config.seed,
             ranks: ranks.count(),
-            communication_share: ranks.seconds() / self.start.elapsed().as_secs_f64().max(1e-9),
+            communication_share: (ranks.seconds() - self.talked_s)
+                / self.start.elapsed().as_secs_f64().max(1e-9),
             parameters_hash: self.learner.policy().map_or(0, |policy| policy.hash()),
             stopped_by: "failure",
         };

@@ -135,7 +135,7 @@ fn wait_until(child: &mut Child, limit: Duration) -> bool {
 /// `FOOTWORK_KILLS` asks for more than a few.
 #[test]
 fn a_rank_that_dies_ends_all_and_the_run_goes_on() {
-    let kills = std::env::var("FOOTWORK_KILLS").map_or(4, |kills| kills.parse().unwrap());
+    let kills = std::env::var("FOOTWORK_KILLS").map_or(2, |kills| kills.parse().unwrap());
     let (folder, path) = folder();
     let config = Config {
         checkpoint_every: 256,
