@@ -31,8 +31,8 @@ impl Opened {
         Opened::of(entry, config, device, task)
     }
 
-    /// The same of a new run, whose device and, if it is to `grow`, number of environments of every rank are found by
-    /// measuring where there is a choice.
+    /// Checks the configuration of a new run and opens its device and data for a rank. The device and, if it is to `grow`,
+    /// the number of every rank's environments are found by measuring where there is a choice.
     pub fn new(
         entry: &TaskEntry,
         ranks: &Ranks,

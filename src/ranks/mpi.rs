@@ -49,11 +49,6 @@ impl Mpi {
         })
     }
 
-    /// How many ranks there are.
-    pub fn count(&self) -> usize {
-        self.world.size() as usize
-    }
-
     /// Cores for this rank, if its machine's are shared out among the ranks there.
     pub fn cores(&self) -> usize {
         self.cores

@@ -81,7 +81,7 @@ impl TaskEntry {
         Config::preset(self.name, base.preset, self.choices(base))
     }
 
-    /// The same changed by the keys that a TOML file names. The policy steers a low level if the file names one, or if
+    /// A preset changed by the keys that a TOML file names. The policy steers a low level if the file names one, or if
     /// it is said here.
     ///
     /// # Errors

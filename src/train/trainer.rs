@@ -109,9 +109,9 @@ struct Loop<'a> {
     learner: Box<dyn Algorithm>,
     state: TrainerState,
     rows: Vec<UpdateMetrics>,
-    /// Of the first rank.
+    /// Writes the metrics, on the first rank.
     writer: Option<MetricsWriter>,
-    /// Of the first rank, until a picture cannot be made.
+    /// Makes the pictures, on the first rank, until one cannot be made.
     #[cfg(feature = "report")]
     snapshots: Option<SnapshotMaker<'a>>,
     /// Environment steps so far.

@@ -94,8 +94,6 @@ fn ranks_that_cannot_train_together_are_refused() {
         1,
         "rank 1: another configuration than the first rank's",
     );
-    let data = folder.path().join("data");
-    std::fs::create_dir(&data).unwrap();
     let mut eval = Command::new("mpiexec");
     eval.args(["-n", "2", PROGRAM, "eval", &out]);
     let output = eval.output().unwrap();

@@ -3,7 +3,7 @@
 use super::Ppo;
 
 impl Ppo {
-    /// The same learning in another number of environments, as far as that goes: in `r` times as many the rollout is
+    /// The choices for another number of environments that learn about as well: in `r` times as many the rollout is
     /// the square root of `r` times shorter, so that batch and minibatch grow by that root, and the learning rate by
     /// the root of it, unless it is adapted to the KL divergence. Fewer environments change nothing else.
     pub fn scaled_to(&self, envs: usize) -> Ppo {
