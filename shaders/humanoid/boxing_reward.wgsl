@@ -173,12 +173,14 @@ fn leads(me: u32) -> bool {
     return knocked > 0.0 || (knocked == 0.0 && carried(DAMAGE + me) > carried(DAMAGE + other));
 }
 
+// By falling or by leaving the arena.
+fn is_over(fighter: u32) -> bool { return (fallen[fighter] && params.fall_ends == 1u) || left[fighter]; }
+
 fn end_of(me: u32) -> u32 {
-    let falls = vec2<bool>(fallen.x && params.fall_ends == 1u, fallen.y && params.fall_ends == 1u);
-    let over = any(falls) || any(left);
+    let lost = is_over(me);
+    let outlasts = is_over(1u - me) && !lost;
     let remains = select(TRUNCATED, SUCCESS, knocks_down[me]);
-    let own = select(remains, FAILED, falls[me] || left[me]);
-    return select(RUNNING, own, over) + select(0u, LEADS, leads(me));
+    return select(select(RUNNING, remains, outlasts), FAILED, lost) + select(0u, LEADS, outlasts || leads(me));
 }
 
 fn measure(me: u32, clinches: bool) {

@@ -188,8 +188,8 @@ pub struct FighterStep {
     /// Its reward.
     pub reward: f32,
     /// How it ends: [`FAILED`] for who has fallen or left the arena; for who remains [`SUCCESS`] by a knock-down, and
-    /// else [`TRUNCATED`]; [`LEADS`] added for who has knocked the other down more often or, that being equal, done
-    /// more damage.
+    /// else [`TRUNCATED`]; [`LEADS`] added for who would win if the bout ended now: who remains alone, or has knocked
+    /// the other down more often, or, that being equal, done more damage.
     pub end: u32,
     /// 0 if the opponent is far, 1 if it is near.
     pub group: u32,
@@ -249,7 +249,12 @@ pub fn step(
     }
     [0, 1].map(|me| FighterStep {
         reward: rewards[me],
-        end: exchange.end(me) + if has_lead(me, state) { LEADS } else { 0 },
+        end: exchange.end(me)
+            + if exchange.outlasts(me) || has_lead(me, state) {
+                LEADS
+            } else {
+                0
+            },
         group: u32::from(near),
     })
 }
@@ -345,12 +350,18 @@ impl<'a> Exchange<'a> {
         of_hand(0).max(of_hand(1))
     }
 
+    /// Whether a fighter has lost by falling or by leaving the arena.
+    fn is_over(&self, fighter: usize) -> bool {
+        (self.fallen[fighter] && self.params.fall_ends == 1) || self.out[fighter]
+    }
+
+    /// Whether only the other has fallen or left the arena.
+    fn outlasts(&self, me: usize) -> bool {
+        self.is_over(1 - me) && !self.is_over(me)
+    }
+
     fn end(&self, me: usize) -> u32 {
-        let falls = self
-            .fallen
-            .map(|fallen| fallen && self.params.fall_ends == 1);
-        let over = [0, 1].map(|fighter| falls[fighter] || self.out[fighter]);
-        match (over[me], over[1 - me]) {
+        match (self.is_over(me), self.is_over(1 - me)) {
             (true, _) => FAILED,
             (false, true) if self.knocks_down[me] => SUCCESS,
             (false, true) => TRUNCATED,
@@ -377,7 +388,7 @@ fn has_lead(me: usize, state: &[f32]) -> bool {
     leads(me, both(KNOCKDOWNS), both(DAMAGE))
 }
 
-/// Whether a fighter would win if the bout ended now, after so many knock-downs by each and so much damage.
+/// Whether a fighter would win if time were up now, after so many knock-downs by each and so much damage.
 pub fn leads(me: usize, knockdowns: [f32; FIGHTERS], damage: [f32; FIGHTERS]) -> bool {
     let lead = |of: [f32; FIGHTERS]| of[me] - of[1 - me];
     lead(knockdowns) > 0.0 || (lead(knockdowns) == 0.0 && lead(damage) > 0.0)

@@ -353,7 +353,7 @@ fn a_fall_the_border_and_time_end_a_bout_for_both() {
     let sum = |name: &str| found.sum(name);
     assert_eq!(
         (sum("episodes"), sum("successes"), sum("fall")),
-        (6.0, 1.0, 4.0)
+        (6.0, 2.0, 4.0)
     );
     assert_eq!(
         (sum("knockdowns"), sum("out"), sum("steps")),

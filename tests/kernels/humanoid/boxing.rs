@@ -318,9 +318,9 @@ fn bouts_end_as_they_should() {
             .all(|step| step.end == FAILED && step.reward < 0.0)
     );
     assert_eq!((measures[2], measures[MEASURES + 2]), (0.0, 0.0));
-    // Who leaves the arena has failed; the other has no lead by it.
+    // Who leaves the arena has failed; the other wins, but its value goes on.
     let ([red, blue], measures) = fought([false, false], [-0.5, 3.01], &params(1));
-    assert_eq!((red.end, blue.end), (TRUNCATED, FAILED));
+    assert_eq!((red.end, blue.end), (TRUNCATED + LEADS, FAILED));
     assert_eq!((measures[3], measures[MEASURES + 3]), (0.0, 1.0));
     let ([red, blue], _) = fought([false, false], [2.0, 3.01], &params(1));
     assert!((red.reward - blue.reward - 30.0).abs() < 1e-3);
@@ -370,7 +370,6 @@ fn only_a_fall_soon_after_a_blow_is_a_knock_down() {
         ring.lay(1);
         let ([red, blue], measures) = ring.step(&params);
         let end = if knocks_down { SUCCESS } else { TRUNCATED };
-        // Damage leads where no knock-down does.
         assert_eq!((red.end, blue.end), (end + LEADS, FAILED), "{since}");
         assert_eq!(red.reward == 500.0, knocks_down, "{since}");
         assert_eq!(measures[2] == 1.0, knocks_down, "{since}");
@@ -390,7 +389,9 @@ fn only_a_fall_soon_after_a_blow_is_a_knock_down() {
     let mut ring = Ring::new([-0.5, 0.5], [0.0, PI]);
     ring.touching[PAIRS] = Vec3::X;
     ring.lay(1);
-    assert_eq!(ring.step(&params).0[0].end, TRUNCATED);
+    let steps = ring.step(&params).0.map(|step| step.end);
+    // It leads in damage, and has lost.
+    assert_eq!(steps, [TRUNCATED + LEADS, FAILED + LEADS]);
 }
 
 #[test]

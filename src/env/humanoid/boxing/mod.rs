@@ -3,9 +3,10 @@
 //! [`Boxing`] are its choices, [`BoxingTask`] plays them, and [`evaluate`](evaluate::evaluate) lets two drivers
 //! fight. A fighter that falls, or leaves the arena, has failed; the other's bout is then over, too. By a knock-down, a
 //! fall soon after a blow, it is that one's [`SUCCESS`](crate::kernels::termination::SUCCESS) and worth nothing more;
-//! else its value goes on, as it does for both when time is up. A bout is won by who has knocked the other down more
-//! often or, that being equal, done more damage; who has failed has won nothing. Damage is the impulse of a fighter's
-//! hands on the other's torso and head, friction included: of no other part, and never of the ground.
+//! else its value goes on, as it does for both when time is up. A bout is won by who remains alone; when time is up, by
+//! who has knocked the other down more often or, that being equal, done more damage; when both fail at once, by nobody.
+//! Damage is the impulse of a fighter's hands on the other's torso and head, friction included: of no other part, and
+//! never of the ground.
 
 pub mod bout;
 mod choices;
