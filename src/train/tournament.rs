@@ -3,9 +3,10 @@
 use super::body_episodes::EPISODES_SEED;
 use super::elo::ratings;
 use crate::env::humanoid::boxing::BoxingTask;
-use crate::env::humanoid::boxing::evaluate::evaluate;
+use crate::env::humanoid::boxing::evaluate::{BoxingReport, evaluate};
 use crate::env::humanoid::driver::BodyDriver;
 use crate::report::table::table;
+use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -51,18 +52,19 @@ pub struct RankedPlayer {
 
 /// Lets each of the players fight every other in `2 * half` bouts, half of them in either corner, from the same starts.
 pub fn play(task: &Arc<BoxingTask>, players: &[TournamentPlayer], half: usize) -> TournamentReport {
-    let mut wins = vec![vec![0; players.len()]; players.len()];
-    for (one, red) in players.iter().enumerate() {
-        for (other, blue) in players
-            .iter()
-            .enumerate()
-            .filter(|(other, _)| *other != one)
-        {
-            let corners = [&*red.driver, &*blue.driver];
-            let found = evaluate(task.clone(), corners, half, EPISODES_SEED);
-            wins[one][other] += (found.won * half as f64).round() as usize;
-            wins[other][one] += (found.lost * half as f64).round() as usize;
-        }
+    let count = players.len();
+    let pairs = (0..count * count).map(|pair| [pair / count, pair % count]);
+    let pairs: Vec<[usize; 2]> = pairs.filter(|[red, blue]| red != blue).collect();
+    // Policies act on one core: bouts of several pairs keep all of them busy.
+    let found = pairs.par_iter().map(|pair| {
+        let corners = pair.map(|player| &*players[player].driver);
+        evaluate(task.clone(), corners, half, EPISODES_SEED)
+    });
+    let found: Vec<BoxingReport> = found.collect();
+    let mut wins = vec![vec![0; count]; count];
+    for ([red, blue], found) in pairs.into_iter().zip(found) {
+        wins[red][blue] += (found.won * half as f64).round() as usize;
+        wins[blue][red] += (found.lost * half as f64).round() as usize;
     }
     let names = players.iter().map(|player| player.name.clone());
     TournamentReport::new(names.collect(), wins, 2 * half)
