@@ -31,6 +31,17 @@ impl MotionClip {
         }
     }
 
+    /// The same motion in pieces of about so many seconds, of which each is named by its number.
+    pub fn pieces(&self, model: &Model, seconds: f32) -> Vec<MotionClip> {
+        let count = ((self.seconds() / seconds).round() as usize).max(1);
+        let first = |piece: usize| piece * self.frames / count * model.nq();
+        let piece = |piece: usize| {
+            let q = self.q[first(piece)..first(piece + 1)].to_vec();
+            MotionClip::new(&format!("{}.{piece}", self.name), model, self.rate, q)
+        };
+        (0..count).map(piece).collect()
+    }
+
     /// From the first frame to the last.
     pub fn seconds(&self) -> f32 {
         (self.frames - 1) as f32 / self.rate

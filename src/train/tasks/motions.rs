@@ -26,6 +26,8 @@ use std::sync::Arc;
 const MIN_FRAMES: usize = 15;
 /// Minutes of the performer's locomotion, and of its boxing.
 const MINUTES: f32 = 2.0;
+/// Seconds of a piece of that. Skills have a latent a clip, and who does many things in one cannot be told which to do.
+const PIECE: f32 = 4.0;
 /// Seconds of the performer's walk, and its speed, m/s.
 const WALK: [f32; 2] = [12.0, 1.2];
 
@@ -75,14 +77,17 @@ fn performed(performance: Performance, model: &Arc<Model>) -> Result<MotionLibra
         let (clips, roles) = synthetic::perform_walk(SYNTHETIC_SEED, seconds, speed);
         return Ok(MotionLibrary::of(&clips, &roles, model)?);
     }
-    let (mut clips, roles) = synthetic::perform(SYNTHETIC_SEED, MINUTES);
-    let walks = clips.len();
-    let (boxing, _) = synthetic::perform_boxing(SYNTHETIC_SEED, MINUTES);
-    clips.extend(boxing);
-    let mut kinds = vec![String::new(); walks];
-    kinds.resize(clips.len(), BOXING.to_string());
+    let (walks, roles) = synthetic::perform(SYNTHETIC_SEED, MINUTES);
+    let (fights, _) = synthetic::perform_boxing(SYNTHETIC_SEED, MINUTES);
+    let (mut motions, mut kinds) = (Vec::new(), Vec::new());
+    for (clips, kind) in [(walks, ""), (fights, BOXING)] {
+        let whole = MotionLibrary::of(&clips, &roles, model)?;
+        let whole = whole.motions().iter();
+        motions.extend(whole.flat_map(|clip| clip.pieces(model, PIECE)));
+        kinds.resize(motions.len(), kind.to_string());
+    }
     // Both are as long: by their seconds, half of what is drawn is boxing.
-    Ok(MotionLibrary::of(&clips, &roles, model)?.with_kinds(kinds)?)
+    Ok(MotionLibrary::new(motions, model)?.with_kinds(kinds)?)
 }
 
 /// What came of a recording.

@@ -41,6 +41,22 @@ fn load<P: AsRef<Path>>(
 }
 
 #[test]
+fn pieces_of_a_motion_are_all_of_it() {
+    let (model, library) = library();
+    let whole = &library.motions()[0];
+    for (seconds, count) in [(1.0, 4), (1.5, 3), (30.0, 1)] {
+        let pieces = whole.pieces(&model, seconds);
+        let joined: Vec<f32> = pieces.iter().flat_map(|piece| piece.q.clone()).collect();
+        assert_eq!((pieces.len(), &joined), (count, &whole.q));
+        let lengths = pieces.iter().map(|piece| piece.frames);
+        let (least, most) = (lengths.clone().min(), lengths.max());
+        assert!(most <= least.map(|least| least + 1), "{least:?} {most:?}");
+        assert!(pieces.iter().all(|piece| piece.rate == whole.rate));
+        assert!(pieces[count - 1].name.ends_with(&format!(".{}", count - 1)));
+    }
+}
+
+#[test]
 fn motions_are_drawn_by_weight_and_times_evenly() {
     const DRAWS: u32 = 200_000;
     let (_, library) = library();
