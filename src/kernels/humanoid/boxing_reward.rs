@@ -247,15 +247,13 @@ pub fn step(
         state[DOWN + me] = is(exchange.fallen[me]);
         state[STAGGER_STEPS + me] = exchange.stagger[me];
     }
-    [0, 1].map(|me| FighterStep {
-        reward: rewards[me],
-        end: exchange.end(me)
-            + if exchange.outlasts(me) || has_lead(me, state) {
-                LEADS
-            } else {
-                0
-            },
-        group: u32::from(near),
+    [0, 1].map(|me| {
+        let wins = exchange.outlasts(me) || has_lead(me, state);
+        FighterStep {
+            reward: rewards[me],
+            end: exchange.end(me) + if wins { LEADS } else { 0 },
+            group: u32::from(near),
+        }
     })
 }
 
