@@ -31,7 +31,7 @@ impl MotionClip {
         }
     }
 
-    /// The same motion in pieces of about so many seconds, of which each is named by its number.
+    /// Cuts the motion into pieces of about `seconds` s, named after it and numbered; none shares a frame with another.
     pub fn pieces(&self, model: &Model, seconds: f32) -> Vec<MotionClip> {
         let count = ((self.seconds() / seconds).round() as usize).max(1);
         let first = |piece: usize| piece * self.frames / count * model.nq();
